@@ -1,0 +1,1 @@
+//! Relighting by precomputed radiance transfer in spherical harmonics, rendered to a vertex array.

@@ -1,0 +1,1 @@
+//! Test support shared by the rooms: device fixture, comparison, golden files, data; and contract tests across rooms.

@@ -1,0 +1,2 @@
+//! The airglow command.
+fn main() {}
