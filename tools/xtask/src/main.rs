@@ -1,2 +1,67 @@
-//! Developer commands.
-fn main() {}
+//! Developer commands, run as `cargo run -p xtask -- COMMAND`.
+
+mod compile;
+mod debug_set;
+mod error;
+mod manifest;
+mod shaders;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(about = "Developer commands of airglow")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Compile shaders/glsl/manifest.toml into shaders/spirv
+    Shaders {
+        /// Write nothing; fail with a list when the committed SPIR-V differs from a fresh compile
+        #[arg(long)]
+        check: bool,
+        /// Only the entries of this room (the first folder of their files)
+        #[arg(long, value_name = "NAME")]
+        room: Option<String>,
+        /// Instead, write modules with source and line numbers here, for frame captures (needs glslangValidator)
+        #[arg(long, value_name = "DIR", conflicts_with = "check")]
+        debug_set: Option<PathBuf>,
+    },
+}
+
+/// The workspace this command was built in.
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Where includes and the manifest's files are looked up.
+fn shader_root() -> PathBuf {
+    workspace().join("shaders/glsl")
+}
+
+fn run(command: Command) -> Result<(), error::Error> {
+    let glsl = shader_root();
+    match command {
+        Command::Shaders { room, debug_set: Some(folder), .. } => {
+            debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)
+        }
+        Command::Shaders { check, room, debug_set: None } => {
+            shaders::run(&glsl, &workspace().join("shaders/spirv"), room.as_deref(), check)
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

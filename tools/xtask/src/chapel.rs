@@ -1,0 +1,177 @@
+//! Makes `assets/mesh/chapel.glb`, the demo scene's building, from `assets/mesh/nave.glb`.
+//!
+//! The nave is one white mesh without a camera. This splits it by shape into floor, walls, vault,
+//! columns, ribs, window frames, wood and altar, gives each a material, refines the long boxes (light
+//! is stored per vertex), and adds a plinth and a camera.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use crate::mesh::Mesh;
+
+/// Longest edge after refinement, metres: the spacing of the nave's own walls.
+const LONGEST_EDGE: f32 = 0.35;
+
+/// Name, base colour (linear) and roughness of each part.
+const MATERIALS: [(&str, [f32; 3], f32); 8] = [
+    ("floor", [0.34, 0.29, 0.25], 0.5),
+    ("wall", [0.66, 0.60, 0.52], 0.9),
+    ("vault", [0.72, 0.68, 0.62], 0.9),
+    ("column", [0.58, 0.51, 0.43], 0.8),
+    ("rib", [0.55, 0.47, 0.40], 0.8),
+    ("frame", [0.50, 0.45, 0.40], 0.8),
+    ("wood", [0.27, 0.15, 0.08], 0.6),
+    ("altar", [0.76, 0.74, 0.70], 0.4),
+];
+
+/// Reads `nave.glb` below `assets` and writes `chapel.glb` beside it.
+pub fn make(assets: &Path) -> Result<()> {
+    let nave = Mesh::read(&assets.join("mesh/nave.glb"))?;
+    let mut parts: Vec<Mesh> = MATERIALS.iter().map(|_| Mesh::default()).collect();
+    let components = nave.components();
+    for component in components.values() {
+        let (low, high) = nave.bounds(component);
+        for triangle in component {
+            let part = classify(&nave, triangle, component.len(), low, high);
+            parts[part].push_triangle(&nave, triangle);
+        }
+    }
+    let refined: Vec<Mesh> = parts.iter().map(|part| part.refined(LONGEST_EDGE)).collect();
+    let plinth = Mesh::block(Vec3::new(-0.55, 0.0, -2.05), Vec3::new(0.55, 0.95, -0.95)).refined(0.12);
+    write(&assets.join("mesh/chapel.glb"), &refined, &plinth)
+}
+
+/// The material of one triangle: by the size of the connected piece it belongs to, and within the
+/// shell (the one piece as long as the hall) by where it faces.
+fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3) -> usize {
+    let extent = high - low;
+    let part = match size {
+        10_000.. => match nave.face_normal(triangle).y {
+            up if up > 0.9 => "floor",
+            up if up < -0.15 => "vault",
+            _ => "wall",
+        },
+        2000..10_000 => "wall",
+        1000..2000 => "column",
+        600..1000 => "rib",
+        100..600 => "frame",
+        _ if low.y > 0.3 && extent.z > 0.9 => "altar",
+        _ => "wood",
+    };
+    MATERIALS.iter().position(|(name, ..)| *name == part).unwrap_or(0)
+}
+
+fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<()> {
+    let mut buffer = Vec::new();
+    let mut accessors = Vec::new();
+    let mut views = Vec::new();
+    let mut primitive = |mesh: &Mesh, material: usize| -> Value {
+        let mut accessor = |bytes: &[u8], description: Value| {
+            views.push(json!({"buffer": 0, "byteOffset": buffer.len(), "byteLength": bytes.len()}));
+            buffer.extend_from_slice(bytes);
+            let mut description = description;
+            description["bufferView"] = json!(views.len() - 1);
+            accessors.push(description);
+            accessors.len() - 1
+        };
+        let (low, high) = mesh.extent();
+        let count = mesh.positions.len();
+        let positions = accessor(
+            bytemuck::cast_slice(&mesh.positions),
+            json!({"componentType": 5126, "type": "VEC3", "count": count, "min": low.to_array(), "max": high.to_array()}),
+        );
+        let normals = accessor(
+            bytemuck::cast_slice(&mesh.normals),
+            json!({"componentType": 5126, "type": "VEC3", "count": count}),
+        );
+        let indices = accessor(
+            bytemuck::cast_slice(&mesh.indices),
+            json!({"componentType": 5125, "type": "SCALAR", "count": mesh.indices.len()}),
+        );
+        json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices, "material": material})
+    };
+    let building: Vec<Value> = parts.iter().enumerate().map(|(index, part)| primitive(part, index)).collect();
+    let altar = MATERIALS.len() - 1;
+    let stand = primitive(plinth, altar);
+    let materials: Vec<Value> = MATERIALS
+        .iter()
+        .map(|(name, colour, roughness)| {
+            json!({"name": name, "pbrMetallicRoughness": {
+                "baseColorFactor": [colour[0], colour[1], colour[2], 1.0],
+                "metallicFactor": 0.0, "roughnessFactor": roughness}})
+        })
+        .collect();
+    let document = json!({
+        "asset": {"version": "2.0", "generator": "xtask chapel", "extras": {"licence": "CC0"}},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [
+            {"name": "building", "mesh": 0},
+            {"name": "plinth", "mesh": 1},
+            {"name": "camera", "camera": 0, "translation": [1.15, 1.55, 4.4], "rotation": [0.0175, 0.1, 0.0, 0.995]},
+        ],
+        "meshes": [{"name": "building", "primitives": building}, {"name": "plinth", "primitives": [stand]}],
+        "materials": materials,
+        "cameras": [{"type": "perspective", "name": "aisle", "perspective": {"yfov": 0.95, "znear": 0.1, "zfar": 100.0}}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": buffer.len()}],
+    });
+    let bytes = pack(&document, buffer)?;
+    std::fs::write(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))
+}
+
+/// A GLB container (glTF 2.0, section 4.4): header, JSON chunk, binary chunk, each padded to four bytes.
+fn pack(document: &Value, mut buffer: Vec<u8>) -> Result<Vec<u8>> {
+    let mut text = serde_json::to_vec(document)?;
+    text.resize(text.len().next_multiple_of(4), b' ');
+    buffer.resize(buffer.len().next_multiple_of(4), 0);
+    let total = 12 + 8 + text.len() + 8 + buffer.len();
+    let mut bytes = Vec::with_capacity(total);
+    for word in [0x4654_6C67, 2, u32::try_from(total)?, u32::try_from(text.len())?, 0x4E4F_534A] {
+        bytes.extend_from_slice(&u32::to_le_bytes(word));
+    }
+    bytes.extend_from_slice(&text);
+    for word in [u32::try_from(buffer.len())?, 0x004E_4942] {
+        bytes.extend_from_slice(&u32::to_le_bytes(word));
+    }
+    bytes.extend_from_slice(&buffer);
+    Ok(bytes)
+}
+
+impl Mesh {
+    /// Triangles grouped by connected piece, vertices welded by position.
+    fn components(&self) -> HashMap<usize, Vec<[u32; 3]>> {
+        let mut welded = HashMap::new();
+        let vertex: Vec<usize> = self
+            .positions
+            .iter()
+            .enumerate()
+            .map(|(index, position)| *welded.entry(position.to_array().map(f32::to_bits)).or_insert(index))
+            .collect();
+        let mut parent: Vec<usize> = (0..self.positions.len()).collect();
+        for triangle in self.triangles() {
+            let [a, b, c] = triangle.map(|index| root(&mut parent, vertex[index as usize]));
+            parent[b] = a;
+            let c = root(&mut parent, c);
+            parent[c] = root(&mut parent, a);
+        }
+        let mut components: HashMap<usize, Vec<[u32; 3]>> = HashMap::new();
+        for triangle in self.triangles() {
+            components.entry(root(&mut parent, vertex[triangle[0] as usize])).or_default().push(triangle);
+        }
+        components
+    }
+}
+
+fn root(parent: &mut [usize], mut index: usize) -> usize {
+    while parent[index] != index {
+        parent[index] = parent[parent[index]];
+        index = parent[index];
+    }
+    index
+}
