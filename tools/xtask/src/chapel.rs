@@ -4,34 +4,48 @@
 //! columns, ribs, window frames, wood and altar, gives each a material, refines the long boxes (light
 //! is stored per vertex), and adds a plinth and a camera.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use anyhow::{Context, Result};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 
+use crate::error::Error;
 use crate::mesh::Mesh;
 
-/// Longest edge after refinement, metres: the spacing of the nave's own walls.
-const LONGEST_EDGE: f32 = 0.35;
+/// Where the camera stands and what it looks at, metres.
+const EYE: Vec3 = Vec3::new(1.3, 1.75, -7.4);
+const TARGET: Vec3 = Vec3::new(0.0, 2.3, 2.0);
 
-/// Name, base colour (linear) and roughness of each part.
-const MATERIALS: [(&str, [f32; 3], f32); 8] = [
-    ("floor", [0.34, 0.29, 0.25], 0.5),
-    ("wall", [0.66, 0.60, 0.52], 0.9),
-    ("vault", [0.72, 0.68, 0.62], 0.9),
-    ("column", [0.58, 0.51, 0.43], 0.8),
-    ("rib", [0.55, 0.47, 0.40], 0.8),
-    ("frame", [0.50, 0.45, 0.40], 0.8),
-    ("wood", [0.27, 0.15, 0.08], 0.6),
-    ("altar", [0.76, 0.74, 0.70], 0.4),
+/// A part of the building.
+struct Part {
+    name: &'static str,
+    /// Linear Rec. 709.
+    base_colour: [f32; 3],
+    roughness: f32,
+    /// Longest edge after refinement, metres; the nave's own spacing is fine enough for the rest.
+    longest_edge: f32,
+}
+
+const fn part(name: &'static str, base_colour: [f32; 3], roughness: f32, longest_edge: f32) -> Part {
+    Part { name, base_colour, roughness, longest_edge }
+}
+
+const PARTS: [Part; 8] = [
+    part("floor", [0.34, 0.29, 0.25], 0.5, 1.0),
+    part("wall", [0.66, 0.60, 0.52], 0.9, 1.0),
+    part("vault", [0.72, 0.68, 0.62], 0.9, 1.0),
+    part("column", [0.58, 0.51, 0.43], 0.8, 1.0),
+    part("rib", [0.55, 0.47, 0.40], 0.8, 1.0),
+    part("frame", [0.50, 0.45, 0.40], 0.8, 1.0),
+    part("wood", [0.27, 0.15, 0.08], 0.6, 0.35),
+    part("altar", [0.76, 0.74, 0.70], 0.4, 0.2),
 ];
 
 /// Reads `nave.glb` below `assets` and writes `chapel.glb` beside it.
-pub fn make(assets: &Path) -> Result<()> {
+pub fn make(assets: &Path) -> Result<(), Error> {
     let nave = Mesh::read(&assets.join("mesh/nave.glb"))?;
-    let mut parts: Vec<Mesh> = MATERIALS.iter().map(|_| Mesh::default()).collect();
+    let mut parts: Vec<Mesh> = PARTS.iter().map(|_| Mesh::default()).collect();
     let components = nave.components();
     for component in components.values() {
         let (low, high) = nave.bounds(component);
@@ -40,8 +54,9 @@ pub fn make(assets: &Path) -> Result<()> {
             parts[part].push_triangle(&nave, triangle);
         }
     }
-    let refined: Vec<Mesh> = parts.iter().map(|part| part.refined(LONGEST_EDGE)).collect();
-    let plinth = Mesh::block(Vec3::new(-0.55, 0.0, -2.05), Vec3::new(0.55, 0.95, -0.95)).refined(0.12);
+    let refined: Vec<Mesh> =
+        parts.iter().zip(&PARTS).map(|(mesh, part)| mesh.refined(part.longest_edge)).collect();
+    let plinth = Mesh::block(Vec3::new(-0.5, 0.0, -2.0), Vec3::new(0.5, 0.9, -1.0)).refined(0.12);
     write(&assets.join("mesh/chapel.glb"), &refined, &plinth)
 }
 
@@ -62,10 +77,10 @@ fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3
         _ if low.y > 0.3 && extent.z > 0.9 => "altar",
         _ => "wood",
     };
-    MATERIALS.iter().position(|(name, ..)| *name == part).unwrap_or(0)
+    PARTS.iter().position(|known| known.name == part).unwrap_or(0)
 }
 
-fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<()> {
+fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
     let mut buffer = Vec::new();
     let mut accessors = Vec::new();
     let mut views = Vec::new();
@@ -95,16 +110,19 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<()> {
         json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices, "material": material})
     };
     let building: Vec<Value> = parts.iter().enumerate().map(|(index, part)| primitive(part, index)).collect();
-    let altar = MATERIALS.len() - 1;
+    let altar = PARTS.len() - 1;
     let stand = primitive(plinth, altar);
-    let materials: Vec<Value> = MATERIALS
+    let materials: Vec<Value> = PARTS
         .iter()
-        .map(|(name, colour, roughness)| {
+        .map(|Part { name, base_colour: [red, green, blue], roughness, .. }| {
             json!({"name": name, "pbrMetallicRoughness": {
-                "baseColorFactor": [colour[0], colour[1], colour[2], 1.0],
+                "baseColorFactor": [red, green, blue, 1.0],
                 "metallicFactor": 0.0, "roughnessFactor": roughness}})
         })
         .collect();
+    let towards = (TARGET - EYE).normalize();
+    let yaw = f32::atan2(-towards.x, -towards.z);
+    let rotation = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(towards.y.asin());
     let document = json!({
         "asset": {"version": "2.0", "generator": "xtask chapel", "extras": {"licence": "CC0"}},
         "scene": 0,
@@ -112,7 +130,7 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<()> {
         "nodes": [
             {"name": "building", "mesh": 0},
             {"name": "plinth", "mesh": 1},
-            {"name": "camera", "camera": 0, "translation": [1.15, 1.55, 4.4], "rotation": [0.0175, 0.1, 0.0, 0.995]},
+            {"name": "camera", "camera": 0, "translation": EYE.to_array(), "rotation": rotation.to_array()},
         ],
         "meshes": [{"name": "building", "primitives": building}, {"name": "plinth", "primitives": [stand]}],
         "materials": materials,
@@ -121,31 +139,29 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<()> {
         "bufferViews": views,
         "buffers": [{"byteLength": buffer.len()}],
     });
-    let bytes = pack(&document, buffer)?;
-    std::fs::write(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))
+    std::fs::write(path, pack(&document, buffer)).map_err(|source| Error::io(path, source))
 }
 
 /// A GLB container (glTF 2.0, section 4.4): header, JSON chunk, binary chunk, each padded to four bytes.
-fn pack(document: &Value, mut buffer: Vec<u8>) -> Result<Vec<u8>> {
-    let mut text = serde_json::to_vec(document)?;
+fn pack(document: &Value, mut buffer: Vec<u8>) -> Vec<u8> {
+    let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     buffer.resize(buffer.len().next_multiple_of(4), 0);
     let total = 12 + 8 + text.len() + 8 + buffer.len();
     let mut bytes = Vec::with_capacity(total);
-    for word in [0x4654_6C67, 2, u32::try_from(total)?, u32::try_from(text.len())?, 0x4E4F_534A] {
-        bytes.extend_from_slice(&u32::to_le_bytes(word));
-    }
+    let words = |bytes: &mut Vec<u8>, words: &[usize]| {
+        bytes.extend(words.iter().flat_map(|&word| (word as u32).to_le_bytes()));
+    };
+    words(&mut bytes, &[0x4654_6C67, 2, total, text.len(), 0x4E4F_534A]);
     bytes.extend_from_slice(&text);
-    for word in [u32::try_from(buffer.len())?, 0x004E_4942] {
-        bytes.extend_from_slice(&u32::to_le_bytes(word));
-    }
+    words(&mut bytes, &[buffer.len(), 0x004E_4942]);
     bytes.extend_from_slice(&buffer);
-    Ok(bytes)
+    bytes
 }
 
 impl Mesh {
     /// Triangles grouped by connected piece, vertices welded by position.
-    fn components(&self) -> HashMap<usize, Vec<[u32; 3]>> {
+    fn components(&self) -> BTreeMap<usize, Vec<[u32; 3]>> {
         let mut welded = HashMap::new();
         let vertex: Vec<usize> = self
             .positions
@@ -160,7 +176,7 @@ impl Mesh {
             let c = root(&mut parent, c);
             parent[c] = root(&mut parent, a);
         }
-        let mut components: HashMap<usize, Vec<[u32; 3]>> = HashMap::new();
+        let mut components: BTreeMap<usize, Vec<[u32; 3]>> = BTreeMap::new();
         for triangle in self.triangles() {
             components.entry(root(&mut parent, vertex[triangle[0] as usize])).or_default().push(triangle);
         }

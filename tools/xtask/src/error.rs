@@ -37,6 +37,14 @@ pub enum Error {
     /// No room of the manifest has the name asked for.
     #[error("no entry of the manifest lies in a room named `{0}`")]
     NoSuchRoom(String),
+    /// A mesh that an asset is made from lacks something.
+    #[error("{path}: {message}")]
+    Asset {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
     /// The external compiler of the debug set failed.
     #[error("{0}")]
     DebugSet(String),

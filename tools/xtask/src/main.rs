@@ -1,9 +1,11 @@
 //! Developer commands, run as `cargo run -p xtask -- COMMAND`.
 
+mod chapel;
 mod compile;
 mod debug_set;
 mod error;
 mod manifest;
+mod mesh;
 mod shaders;
 
 use std::path::{Path, PathBuf};
@@ -32,6 +34,8 @@ enum Command {
         #[arg(long, value_name = "DIR", conflicts_with = "check")]
         debug_set: Option<PathBuf>,
     },
+    /// Make assets/mesh/chapel.glb, the demo scene's building, from assets/mesh/nave.glb
+    Chapel,
 }
 
 /// The workspace this command was built in.
@@ -47,6 +51,7 @@ fn shader_root() -> PathBuf {
 fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
+        Command::Chapel => chapel::make(&workspace().join("assets")),
         Command::Shaders { room, debug_set: Some(folder), .. } => {
             debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)
         }

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use anyhow::{Context, Result};
 use glam::Vec3;
+
+use crate::error::Error;
 
 /// Positions in metres, unit normals, three indices a triangle.
 #[derive(Default)]
@@ -16,20 +17,22 @@ pub struct Mesh {
 
 impl Mesh {
     /// The first primitive of the first mesh of a GLB file that carries its own buffer.
-    pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
-        let file = gltf::Gltf::from_slice(&bytes)?;
-        let blob = file.blob.as_deref().context("the GLB has no binary chunk")?;
-        let primitive = file
-            .meshes()
-            .next()
-            .and_then(|mesh| mesh.primitives().next())
-            .context("the GLB has no mesh")?;
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let missing = |what: &str| Error::Asset { path: path.to_owned(), message: format!("has no {what}") };
+        let bytes = std::fs::read(path).map_err(|source| Error::io(path, source))?;
+        let file = gltf::Gltf::from_slice(&bytes)
+            .map_err(|error| Error::Asset { path: path.to_owned(), message: error.to_string() })?;
+        let blob = file.blob.as_deref().ok_or_else(|| missing("binary chunk"))?;
+        let mut primitives = file.meshes().flat_map(|mesh| mesh.primitives());
+        let primitive = primitives.next().ok_or_else(|| missing("mesh"))?;
         let reader = primitive.reader(|_| Some(blob));
+        let vectors = |values: Option<Vec<[f32; 3]>>, what| {
+            values.map(|v| v.into_iter().map(Vec3::from).collect()).ok_or_else(|| missing(what))
+        };
         Ok(Self {
-            positions: reader.read_positions().context("no positions")?.map(Vec3::from).collect(),
-            normals: reader.read_normals().context("no normals")?.map(Vec3::from).collect(),
-            indices: reader.read_indices().context("no indices")?.into_u32().collect(),
+            positions: vectors(reader.read_positions().map(Iterator::collect), "positions")?,
+            normals: vectors(reader.read_normals().map(Iterator::collect), "normals")?,
+            indices: reader.read_indices().ok_or_else(|| missing("indices"))?.into_u32().collect(),
         })
     }
 
@@ -48,7 +51,12 @@ impl Mesh {
                 let mut normal = [0.0; 3];
                 normal[axis] = 2.0 * side - 1.0;
                 let base = mesh.positions.len() as u32;
-                mesh.positions.extend([corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+                mesh.positions.extend([
+                    corner(0.0, 0.0),
+                    corner(1.0, 0.0),
+                    corner(1.0, 1.0),
+                    corner(0.0, 1.0),
+                ]);
                 mesh.normals.extend([Vec3::from(normal); 4]);
                 let order = if side > 0.5 { [0, 1, 2, 0, 2, 3] } else { [0, 2, 1, 0, 3, 2] };
                 mesh.indices.extend(order.map(|corner| base + corner));
@@ -97,12 +105,15 @@ impl Mesh {
         let mut welder = Welder::default();
         let mut queue: Vec<[u32; 3]> = Vec::new();
         for triangle in self.triangles() {
-            queue.push(triangle.map(|index| {
-                welder.vertex(self.positions[index as usize], self.normals[index as usize])
-            }));
+            queue
+                .push(triangle.map(|index| {
+                    welder.vertex(self.positions[index as usize], self.normals[index as usize])
+                }));
         }
         while let Some([a, b, c]) = queue.pop() {
-            let length = |i: u32, j: u32| welder.mesh.positions[i as usize].distance(welder.mesh.positions[j as usize]);
+            let length = |i: u32, j: u32| {
+                welder.mesh.positions[i as usize].distance(welder.mesh.positions[j as usize])
+            };
             let edges = [(a, b, c, length(a, b)), (b, c, a, length(b, c)), (c, a, b, length(c, a))];
             let (from, to, opposite, long) =
                 edges.into_iter().max_by(|x, y| x.3.total_cmp(&y.3)).unwrap_or(edges[0]);
