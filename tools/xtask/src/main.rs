@@ -1,6 +1,8 @@
 //! Developer commands, run as `cargo run -p xtask -- COMMAND`.
 
 mod chapel;
+#[cfg(test)]
+mod common_tests;
 mod compile;
 mod debug_set;
 mod error;
