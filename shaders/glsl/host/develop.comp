@@ -1,0 +1,48 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Develops the picture: averages the samples of each pixel, once scene-linear and once exposed, tone-mapped and
+// encoded. Samples are averaged after the tone map, so that an edge against a bright sky stays smooth.
+
+#include "host/tone_map.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0) uniform texture2D radiance;
+
+// Scene-linear RGB, three floats a pixel.
+layout(std430, set = 0, binding = 1) writeonly buffer Linear {
+    float values[];
+} linear_picture;
+
+// sRGB-encoded, one byte a channel, red lowest.
+layout(std430, set = 0, binding = 2) writeonly buffer Display {
+    uint values[];
+} display_picture;
+
+layout(push_constant) uniform Settings {
+    uvec2 size;   // pixels of the picture
+    uint samples; // along each side of a pixel
+    float exposure;
+} settings;
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= settings.size.x || pixel.y >= settings.size.y) { return; }
+    vec3 sum = vec3(0.0);
+    vec3 shown = vec3(0.0);
+    for (uint y = 0u; y < settings.samples; ++y) {
+        for (uint x = 0u; x < settings.samples; ++x) {
+            vec3 value = texelFetch(radiance, ivec2(pixel * settings.samples + uvec2(x, y)), 0).rgb;
+            sum += value;
+            shown += tone_map(value * settings.exposure);
+        }
+    }
+    float weight = 1.0 / float(settings.samples * settings.samples);
+    uint at = pixel.y * settings.size.x + pixel.x;
+    linear_picture.values[3u * at] = sum.r * weight;
+    linear_picture.values[3u * at + 1u] = sum.g * weight;
+    linear_picture.values[3u * at + 2u] = sum.b * weight;
+    display_picture.values[at] = packUnorm4x8(vec4(srgb_encode(shown * weight), 1.0));
+}

@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The demo host's forward draw: places a mesh, and hands on what the passes wrote for each vertex.
+//
+// AIRGLOW_RELIGHT 1: the relight pass has rendered the light that a white diffuse surface sends out into a vertex
+// array, bound as one more attribute. 0: the room is absent, and the draw has no such input.
+
+#include "host/frame.glsl"
+#include "host/material.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 uv;
+#if AIRGLOW_RELIGHT
+layout(location = 2) in vec4 colour;
+#endif
+
+layout(location = 0) out vec2 out_uv;
+layout(location = 1) out vec3 out_light;
+
+void main()
+{
+    gl_Position = frame.clip_from_world * (material.world_from_object * vec4(position, 1.0));
+    out_uv = vec2(dot(material.uv_linear.xy, uv), dot(material.uv_linear.zw, uv)) + material.uv_offset;
+#if AIRGLOW_RELIGHT
+    out_light = colour.rgb;
+#else
+    out_light = frame.ambient.rgb;
+#endif
+}

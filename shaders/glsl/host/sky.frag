@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The background: the environment's radiance in the direction of the pixel.
+
+#include "host/frame.glsl"
+
+layout(set = 0, binding = 1) uniform texture2D environment;
+layout(set = 0, binding = 2) uniform sampler environment_sampler;
+
+layout(location = 0) in vec3 direction;
+
+layout(location = 0) out vec4 radiance;
+
+const float PI = 3.14159265358979;
+
+void main()
+{
+    vec3 d = mat3(frame.map_from_world) * direction;
+    float u = atan(d.x, -d.z) / (2.0 * PI) + 0.5;
+    float v = atan(length(d.xz), d.y) / PI;
+    radiance = vec4(textureLod(sampler2D(environment, environment_sampler), vec2(u, v), 0.0).rgb, 1.0);
+}
