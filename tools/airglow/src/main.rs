@@ -1,2 +1,33 @@
-//! The airglow command.
-fn main() {}
+//! The airglow command: the first host of the library, and the instruments that measure it.
+//!
+//! Each command has one file under `commands`; what they share lies beside: `host` opens a device and
+//! draws frames as an engine would, `report` holds measurements and plots, `compare` holds image errors,
+//! `eval` runs a pass's own code on rows of parameters.
+
+mod cli;
+mod commands;
+mod compare;
+mod eval;
+mod failure;
+mod files;
+mod output;
+mod report;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::Cli;
+use crate::output::Output;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let output = Output::new(&cli.global);
+    match commands::run(cli, &output) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output.failure(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

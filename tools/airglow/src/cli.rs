@@ -1,0 +1,55 @@
+//! The command line: what can be asked, in words that need no prior knowledge of the project.
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::commands::compare;
+
+const FIRST_STEPS: &str = "\
+First steps:
+  airglow devices                                 list the Vulkan devices of this machine
+  airglow render assets/scenes/spot.toml -o spot.png
+                                                  bake (once, then cached) and draw a scene
+  airglow plan assets/scenes/spot.toml            show what a frame does, and what it leaves out
+  airglow report relight -o out/report            measure the pass: error against time
+
+Exit codes:
+  0  done
+  1  failed while working (files, Vulkan)
+  2  the command line could not be understood
+  3  a check failed (compare --max-flip, stability)
+  4  no device fits --device, or it lacks something that is required
+  5  an input was refused (scene, environment, CSV); the message says how to mend it";
+
+/// Real-time lighting passes for Vulkan: bake, draw, measure and explain.
+#[derive(Debug, Parser)]
+#[command(name = "airglow", version, after_help = FIRST_STEPS, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Options that every command understands.
+#[derive(Clone, Debug, Args)]
+pub struct Global {
+    /// Vulkan device: its index in `airglow devices`, part of its name, or a kind (discrete, integrated,
+    /// virtual, cpu). Without it the fastest kind present is taken.
+    #[arg(long, global = true, value_name = "DEVICE")]
+    pub device: Option<String>,
+    /// Switch on the Vulkan validation layers with synchronization checks; any message fails the command.
+    #[arg(long, global = true)]
+    pub validate: bool,
+    /// Print results only: no progress bars, no remarks.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Print results as JSON on standard output.
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Compare(compare::Arguments),
+}

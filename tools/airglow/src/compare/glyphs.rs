@@ -1,0 +1,81 @@
+//! The few characters a scale bar needs, drawn as 3 x 5 blocks: no font file is read or shipped.
+
+use airglow_scene::FloatImage;
+
+/// Height of a line of text before enlargement, including the gap below it.
+pub const LINE: usize = 6;
+const ADVANCE: usize = 4;
+
+/// Rows of three from the top, most significant bit left; `None` leaves a gap.
+fn rows(character: char) -> Option<[u8; 5]> {
+    Some(match character {
+        '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
+        '1' => [0b010, 0b110, 0b010, 0b010, 0b111],
+        '2' => [0b111, 0b001, 0b111, 0b100, 0b111],
+        '3' => [0b111, 0b001, 0b111, 0b001, 0b111],
+        '4' => [0b101, 0b101, 0b111, 0b001, 0b001],
+        '5' => [0b111, 0b100, 0b111, 0b001, 0b111],
+        '6' => [0b111, 0b100, 0b111, 0b101, 0b111],
+        '7' => [0b111, 0b001, 0b010, 0b010, 0b010],
+        '8' => [0b111, 0b101, 0b111, 0b101, 0b111],
+        '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
+        '+' => [0b000, 0b010, 0b111, 0b010, 0b000],
+        '-' => [0b000, 0b000, 0b111, 0b000, 0b000],
+        '.' => [0b000, 0b000, 0b000, 0b000, 0b010],
+        'e' => [0b000, 0b111, 0b101, 0b110, 0b111],
+        _ => return None,
+    })
+}
+
+/// Width in pixels of `text` at an enlargement of `scale`.
+pub fn width(text: &str, scale: usize) -> usize {
+    text.chars().count() * ADVANCE * scale
+}
+
+/// Draws `text` with its top left corner at (`left`, `top`); what falls outside the picture is cut off.
+pub fn draw(picture: &mut FloatImage, text: &str, left: usize, top: usize, scale: usize, colour: [f32; 3]) {
+    for (position, character) in text.chars().enumerate() {
+        let Some(rows) = rows(character) else { continue };
+        for (row, bits) in rows.iter().enumerate() {
+            for column in (0..3).filter(|column| bits >> (2 - column) & 1 == 1) {
+                block(
+                    picture,
+                    left + (position * ADVANCE + column) * scale,
+                    top + row * scale,
+                    scale,
+                    colour,
+                );
+            }
+        }
+    }
+}
+
+fn block(picture: &mut FloatImage, left: usize, top: usize, size: usize, colour: [f32; 3]) {
+    for y in top..(top + size).min(picture.height) {
+        for x in left..(left + size).min(picture.width) {
+            picture.pixels[y * picture.width + x] = colour;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::picture;
+
+    #[test]
+    fn all_characters_of_a_number_are_known_and_distinct() {
+        let characters = "0123456789+-.e";
+        let mut shapes: Vec<_> = characters.chars().map(|c| rows(c).unwrap()).collect();
+        shapes.sort_unstable();
+        shapes.dedup();
+        assert_eq!(shapes.len(), characters.len());
+    }
+
+    #[test]
+    fn text_past_the_border_is_cut_off() {
+        let mut picture = picture::from_fn(5, 4, |_, _| [0.0; 3]);
+        draw(&mut picture, "88", 3, 2, 2, [1.0; 3]);
+        assert!(picture.pixels[4 * 3 - 1 + 3][0] > 0.0);
+    }
+}

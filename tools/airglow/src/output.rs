@@ -1,0 +1,79 @@
+//! Where results, remarks and progress go: results to standard output, everything else to standard error.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::cli::Global;
+use crate::failure::{Failure, Outcome};
+
+/// How the user wants to be told things.
+#[derive(Clone, Debug)]
+pub struct Output {
+    quiet: bool,
+    json: bool,
+}
+
+impl Output {
+    /// Reads `--quiet` and `--json`.
+    pub fn new(global: &Global) -> Self {
+        Self { quiet: global.quiet, json: global.json }
+    }
+
+    /// Whether results are to be printed as JSON.
+    pub fn json(&self) -> bool {
+        self.json
+    }
+
+    /// A remark on standard error; silent with `--quiet`.
+    pub fn say(&self, remark: impl AsRef<str>) {
+        if !self.quiet {
+            eprintln!("{}", remark.as_ref());
+        }
+    }
+
+    /// A warning on standard error, printed even with `--quiet`.
+    pub fn warn(&self, warning: impl AsRef<str>) {
+        eprintln!("warning: {}", warning.as_ref());
+    }
+
+    /// The result: `value` as JSON with `--json`, else what `text` makes of it.
+    pub fn result<T: Serialize>(&self, value: &T, text: impl FnOnce(&T) -> String) -> Outcome {
+        if self.json {
+            let json = serde_json::to_string_pretty(value)
+                .map_err(|error| Failure::work(format!("could not write the result as JSON: {error}")))?;
+            println!("{json}");
+        } else {
+            let text = text(value);
+            println!("{}", text.trim_end());
+        }
+        Ok(())
+    }
+
+    /// The failure that ends the command.
+    pub fn failure(&self, failure: &Failure) {
+        if self.json {
+            let value = serde_json::json!({ "error": failure.to_string(), "kind": failure.kind_name() });
+            println!("{value}");
+        }
+        eprintln!("error: {failure}");
+    }
+
+    /// A progress bar over `length` steps of `unit`; hidden with `--quiet` and when standard error is no
+    /// terminal.
+    pub fn progress(&self, what: &str, length: u64, unit: &str) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new(length);
+        let template =
+            format!("{{msg:24}} {{bar:32}} {{human_pos}}/{{human_len}} {unit} {{per_sec}} {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        bar.set_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(200));
+        bar
+    }
+}

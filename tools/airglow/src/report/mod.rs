@@ -1,0 +1,10 @@
+//! Measurements as data, and what a reader makes of them: tables, plots, fronts and comparisons.
+
+pub mod date;
+pub mod html;
+pub mod interleave;
+pub mod model;
+pub mod pareto;
+pub mod plot;
+pub mod table;
+pub mod write;

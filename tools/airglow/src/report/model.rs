@@ -1,0 +1,217 @@
+//! A report as plain data: what was measured, where, and every raw sample. JSON holds exactly this.
+
+use airglow_math::statistics;
+use serde::{Deserialize, Serialize};
+
+/// One run of measurements of one pass on one device.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Report {
+    /// The pass measured.
+    pub pass: String,
+    /// Where it was measured.
+    pub machine: Machine,
+    /// The command line that makes this report again.
+    pub command: String,
+    /// Day of the run, ISO 8601, UTC.
+    pub date: String,
+    /// What was lit, in a sentence: meshes, vertices, environment.
+    pub workload: String,
+    /// What a reader must know to read the numbers rightly.
+    pub remarks: Vec<String>,
+    /// One curve for each knob.
+    pub curves: Vec<Curve>,
+}
+
+/// The device and its driver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Device name as the driver states it.
+    pub device: String,
+    /// discrete, integrated, virtual, cpu or other.
+    pub kind: String,
+    /// Driver name and version.
+    pub driver: String,
+    /// Clocks, where the system says.
+    pub clocks: Option<String>,
+    /// Whether the driver computes on the CPU, so that the order of rivals may differ on a GPU.
+    pub software: bool,
+}
+
+/// What happens to error, time and memory as one knob turns.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Curve {
+    /// The knob.
+    pub knob: String,
+    /// What the sweep answers, in a sentence.
+    pub question: String,
+    /// Norm of the errors.
+    pub norm: String,
+    /// What was timed.
+    pub timed: String,
+    /// The settings measured, in the knob's order.
+    pub points: Vec<Point>,
+    /// The setting that is the default on this device, and why.
+    pub chosen: Option<Choice>,
+    /// The chosen setting's time against each rival's.
+    pub comparisons: Vec<Comparison>,
+}
+
+/// The setting picked from a curve.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Choice {
+    /// Its name among the points.
+    pub setting: String,
+    /// The line of the curve that decided, in words.
+    pub reason: String,
+}
+
+/// One setting of a knob.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Point {
+    /// Name of the setting.
+    pub setting: String,
+    /// Milliseconds of each measured run, warm-up excluded; empty where only error was measured.
+    pub milliseconds: Vec<f64>,
+    /// Memory the setting needs, bytes.
+    pub memory: u64,
+    /// Counts that do not depend on the machine.
+    pub counts: Counts,
+    /// Errors against the three truths.
+    pub error: Errors,
+}
+
+/// Work of one run of the pass, the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Bytes read and written at least once.
+    pub bytes: u64,
+    /// Shader invocations.
+    pub invocations: u64,
+    /// Compute dispatches.
+    pub dispatches: u64,
+    /// Draws.
+    pub draws: u64,
+}
+
+/// Errors against the three truths; `None` where a truth does not apply.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// GPU against f64, same model.
+    pub arithmetic: Option<f64>,
+    /// Against the converged setting of the same knob.
+    pub setting: Option<f64>,
+    /// Against ray-traced truth.
+    pub model: Option<f64>,
+}
+
+/// The paired ratio of two settings' times.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Setting above the fraction line.
+    pub setting: String,
+    /// Setting below it.
+    pub against: String,
+    /// Median of the paired ratios.
+    pub ratio: f64,
+    /// Bootstrap 95 % interval of it.
+    pub interval: [f64; 2],
+}
+
+impl Comparison {
+    /// Two settings are called different only if the interval excludes 1.
+    pub fn different(&self) -> bool {
+        self.interval[0] > 1.0 || self.interval[1] < 1.0
+    }
+
+    /// The verdict in words.
+    pub fn verdict(&self) -> &'static str {
+        if !self.different() {
+            "not different"
+        } else if self.ratio < 1.0 {
+            "faster"
+        } else {
+            "slower"
+        }
+    }
+}
+
+/// Median, 5th and 95th percentile and count of the samples.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    pub median: f64,
+    pub p5: f64,
+    pub p95: f64,
+    pub n: usize,
+}
+
+impl Summary {
+    /// `None` without samples.
+    pub fn of(samples: &[f64]) -> Option<Self> {
+        let percentiles = statistics::percentiles(samples, &[5.0, 50.0, 95.0]).ok()?;
+        Some(Self { p5: percentiles[0], median: percentiles[1], p95: percentiles[2], n: samples.len() })
+    }
+}
+
+impl Point {
+    /// Statistics of the times, if any were measured.
+    pub fn time(&self) -> Option<Summary> {
+        Summary::of(&self.milliseconds)
+    }
+
+    /// The error that decides: the model's if known, else the setting's, else the arithmetic's.
+    pub fn deciding_error(&self) -> Option<f64> {
+        self.error.model.or(self.error.setting).or(self.error.arithmetic)
+    }
+}
+
+impl Curve {
+    /// The measured point of a setting.
+    pub fn point(&self, setting: &str) -> Option<&Point> {
+        self.points.iter().find(|point| point.setting == setting)
+    }
+
+    /// Whether `point` is the chosen one.
+    pub fn is_chosen(&self, point: &Point) -> bool {
+        self.chosen.as_ref().is_some_and(|choice| choice.setting == point.setting)
+    }
+}
+
+/// A small report for the tests of what is made from reports.
+#[cfg(test)]
+pub mod testing {
+    use super::*;
+
+    pub fn report(device: &str) -> Report {
+        let point = |setting: &str, milliseconds: f64, error: f64| Point {
+            setting: setting.to_owned(),
+            milliseconds: vec![milliseconds, milliseconds * 1.1, milliseconds * 0.9],
+            memory: (milliseconds * 1000.0) as u64,
+            counts: Counts { bytes: 7, invocations: 5, dispatches: 1, draws: 0 },
+            error: Errors { arithmetic: Some(1e-7), setting: Some(error), model: None },
+        };
+        let curve = Curve {
+            knob: "resolution".to_owned(),
+            question: "Is fine worth its time? <yes>".to_owned(),
+            norm: "relative L2".to_owned(),
+            timed: "one frame".to_owned(),
+            points: vec![point("coarse", 1.0, 0.1), point("fine", 4.0, 0.01)],
+            chosen: Some(Choice { setting: "fine".to_owned(), reason: "it is fine".to_owned() }),
+            comparisons: Vec::new(),
+        };
+        Report {
+            pass: "test".to_owned(),
+            machine: Machine {
+                device: device.to_owned(),
+                kind: "cpu".to_owned(),
+                driver: "none".to_owned(),
+                clocks: None,
+                software: true,
+            },
+            command: "airglow report test".to_owned(),
+            date: "2026-01-01".to_owned(),
+            workload: "nothing".to_owned(),
+            remarks: Vec::new(),
+            curves: vec![curve],
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Plots as SVG text that is pasted into the page: error against time, and error against memory, both
+//! logarithmic; the Pareto front joined by a line, the chosen point ringed.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::model::{Curve, Point, Report};
+use super::pareto;
+use crate::failure::{Failure, Outcome};
+
+const SIZE: (u32, u32) = (720, 440);
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(31, 90, 166),
+    RGBColor(196, 78, 34),
+    RGBColor(34, 128, 70),
+    RGBColor(128, 62, 150),
+    RGBColor(150, 120, 20),
+    RGBColor(90, 90, 90),
+];
+
+/// What lies along the horizontal axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cost {
+    /// Median milliseconds.
+    Time,
+    /// Bytes of memory.
+    Memory,
+}
+
+impl Cost {
+    fn of(self, point: &Point) -> Option<f64> {
+        match self {
+            Cost::Time => point.time().map(|time| time.median),
+            Cost::Memory => (point.memory > 0).then_some(point.memory as f64 / 1024.0),
+        }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Cost::Time => "milliseconds (median; bars from 5th to 95th percentile)",
+            Cost::Memory => "memory, KiB",
+        }
+    }
+}
+
+/// A point as the plot needs it.
+struct Dot {
+    cost: f64,
+    error: f64,
+    spread: Option<(f64, f64)>,
+    setting: String,
+    chosen: bool,
+}
+
+/// The SVG of one knob over all reports that measured it; `None` if no two points have a cost and an error.
+pub fn error_against(cost: Cost, reports: &[(&Report, &Curve)]) -> Outcome<Option<String>> {
+    let series: Vec<(String, Vec<Dot>)> = reports
+        .iter()
+        .map(|(report, curve)| (report.machine.device.clone(), dots(cost, curve)))
+        .filter(|(_, dots)| !dots.is_empty())
+        .collect();
+    let all = || series.iter().flat_map(|(_, dots)| dots);
+    if all().count() < 2 {
+        return Ok(None);
+    }
+    let costs = range(all().flat_map(|dot| [dot.cost, dot.spread.map_or(dot.cost, |s| s.1)]));
+    let errors = range(all().map(|dot| dot.error));
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        draw(&area, cost, &series, costs, errors)
+            .map_err(|error| Failure::work(format!("could not draw a plot: {error}")))?;
+    }
+    Ok(Some(svg))
+}
+
+fn dots(cost: Cost, curve: &Curve) -> Vec<Dot> {
+    let make = |point: &Point| {
+        let (at, error) = (cost.of(point)?, point.deciding_error()?);
+        let spread = if cost == Cost::Time { point.time().map(|time| (time.p5, time.p95)) } else { None };
+        let visible = at > 0.0 && error > 0.0 && at.is_finite() && error.is_finite();
+        visible.then(|| Dot {
+            cost: at,
+            error,
+            spread,
+            setting: point.setting.clone(),
+            chosen: curve.is_chosen(point),
+        })
+    };
+    curve.points.iter().filter_map(make).collect()
+}
+
+/// The smallest and largest value with a margin that is even on a logarithmic axis.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), v| (low.min(v), high.max(v)));
+    let margin = (high / low).powf(0.12).max(1.3);
+    (low / margin, high * margin)
+}
+
+fn draw(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    cost: Cost,
+    series: &[(String, Vec<Dot>)],
+    costs: (f64, f64),
+    errors: (f64, f64),
+) -> Result<(), Box<dyn std::error::Error>> {
+    area.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(area)
+        .margin(12)
+        .x_label_area_size(42)
+        .y_label_area_size(70)
+        .build_cartesian_2d((costs.0..costs.1).log_scale(), (errors.0..errors.1).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc(cost.label())
+        .y_desc("error")
+        .label_style(("sans-serif", 13))
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| format!("{value:.0e}"))
+        .light_line_style(RGBColor(238, 238, 238))
+        .bold_line_style(RGBColor(215, 215, 215))
+        .draw()?;
+    for (index, (device, dots)) in series.iter().enumerate() {
+        let colour = COLOURS[index % COLOURS.len()];
+        let pairs: Vec<(f64, f64)> = dots.iter().map(|dot| (dot.cost, dot.error)).collect();
+        let front: Vec<(f64, f64)> = pareto::front(&pairs).into_iter().map(|i| pairs[i]).collect();
+        chart
+            .draw_series(LineSeries::new(front, colour.stroke_width(2)))?
+            .label(device.as_str())
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        let bars = dots.iter().filter_map(|dot| dot.spread.map(|spread| (dot, spread)));
+        chart.draw_series(bars.map(|(dot, (p5, p95))| {
+            PathElement::new([(p5, dot.error), (p95, dot.error)], colour.mix(0.5).stroke_width(1))
+        }))?;
+        chart.draw_series(dots.iter().map(|dot| Circle::new((dot.cost, dot.error), 4, colour.filled())))?;
+        let ringed = dots.iter().filter(|dot| dot.chosen);
+        chart.draw_series(ringed.map(|dot| Circle::new((dot.cost, dot.error), 9, BLACK.stroke_width(2))))?;
+        chart.draw_series(dots.iter().map(|dot| {
+            EmptyElement::at((dot.cost, dot.error))
+                + Text::new(dot.setting.clone(), (8, -14), ("sans-serif", 13))
+        }))?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    area.present()?;
+    Ok(())
+}
+
+fn short(value: f64) -> String {
+    if (0.01..10_000.0).contains(&value) {
+        format!("{}", (value * 1e4).round() / 1e4)
+    } else {
+        format!("{value:.0e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::model::testing;
+
+    #[test]
+    fn the_plot_names_every_setting_and_device() {
+        let report = testing::report("a test device");
+        let svg = error_against(Cost::Time, &[(&report, &report.curves[0])]).unwrap().unwrap();
+        for text in ["coarse", "fine", "a test device", "<svg"] {
+            assert!(svg.contains(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn nothing_to_plot_is_no_plot() {
+        let mut report = testing::report("a test device");
+        report.curves[0].points.truncate(1);
+        assert!(error_against(Cost::Time, &[(&report, &report.curves[0])]).unwrap().is_none());
+    }
+}
