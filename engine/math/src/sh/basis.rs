@@ -15,7 +15,7 @@ use crate::error::check_length;
 /// Values of the basis at a direction, in f64.
 ///
 /// `direction` must have unit length: it is not normalised here, and a longer or shorter one yields the
-/// basis' polynomials at that point, which are no harmonics. `out` receives `order²` values.
+/// basis' polynomials at that point, which are no harmonics. NaN in, NaN out. `out` receives `order²` values.
 ///
 /// # Errors
 /// [`MathError::Order`]; [`MathError::Length`] unless `out` holds `order²` values.

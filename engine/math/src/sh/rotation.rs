@@ -216,3 +216,137 @@ fn partial(first: &Band, below: &Band, i: i32, mu: i32, n: i32) -> f64 {
         first.at(i, 0) * below.at(mu, n)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sh::{index, project, reconstruct};
+    use crate::testing::{assert_all_close, assert_close, coefficients, direction};
+    use glam::DVec3;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    /// Random unit quaternions, half-turns among them.
+    fn quaternion() -> impl Strategy<Value = DQuat> {
+        let half_turn = direction().prop_map(|axis| DQuat::from_axis_angle(axis, PI));
+        let any = (direction(), -PI..PI).prop_map(|(axis, angle)| DQuat::from_axis_angle(axis, angle));
+        prop_oneof![4 => any, 1 => half_turn]
+    }
+
+    fn rotate(order: usize, q: DQuat, f: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; f.len()];
+        Rotation::from_quaternion(order, q).unwrap().apply(f, &mut out).unwrap();
+        out
+    }
+
+    fn norm(f: &[f64]) -> f64 {
+        f.iter().map(|c| c * c).sum::<f64>().sqrt()
+    }
+
+    proptest! {
+        #[test]
+        fn commutes_with_evaluation(q in quaternion(), f in coefficients(8), s in direction()) {
+            let expected = reconstruct(8, &f, q.inverse() * s).unwrap();
+            assert_close("rotated(s)", reconstruct(8, &rotate(8, q, &f), s).unwrap(), expected, 1e-12);
+        }
+
+        #[test]
+        fn composes(p in quaternion(), q in quaternion(), f in coefficients(8)) {
+            assert_all_close("p q", &rotate(8, p * q, &f), &rotate(8, p, &rotate(8, q, &f)), 1e-12);
+        }
+
+        #[test]
+        fn preserves_the_norm_of_each_band(q in quaternion(), f in coefficients(8)) {
+            let rotated = rotate(8, q, &f);
+            for l in 0..8 {
+                let band = l * l..(l + 1) * (l + 1);
+                assert_close(&format!("band {l}"), norm(&rotated[band.clone()]), norm(&f[band]), 1e-12);
+            }
+        }
+
+        #[test]
+        fn the_inverse_undoes(q in quaternion(), f in coefficients(8)) {
+            let rotation = Rotation::from_quaternion(8, q).unwrap();
+            let mut back = vec![0.0; 64];
+            rotation.inverse().apply(&rotate(8, q, &f), &mut back).unwrap();
+            assert_all_close("f", &back, &f, 1e-12);
+        }
+
+        #[test]
+        fn length_and_sign_of_the_quaternion_do_not_matter(q in quaternion(), exponent in -1000..1000_i32) {
+            let unit = Rotation::from_quaternion(6, q).unwrap();
+            let scaled = Rotation::from_quaternion(6, -q * f64::from(exponent).exp2()).unwrap();
+            assert_all_close("matrix", scaled.matrices(), unit.matrices(), 1e-13);
+        }
+    }
+
+    #[test]
+    fn agrees_with_quadrature() {
+        let q = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 1.1);
+        let rotation = Rotation::from_quaternion(5, q).unwrap();
+        for j in 0..25 {
+            let mut one = vec![0.0; 25];
+            one[j] = 1.0;
+            let expected = project(5, 8, |s| reconstruct(5, &one, q.inverse() * s).unwrap()).unwrap();
+            let mut column = vec![0.0; 25];
+            rotation.apply(&one, &mut column).unwrap();
+            assert_all_close(&format!("column {j}"), &column, &expected, 1e-13);
+        }
+    }
+
+    /// A quarter turn about +Y takes +Z to +X; a half-turn about +X flips the signs of y and z.
+    #[test]
+    fn turns_the_right_way() {
+        let mut up_z = [0.0; 4];
+        up_z[index(1, 0)] = 1.0;
+        let turned = rotate(2, DQuat::from_rotation_y(PI / 2.0), &up_z);
+        assert_all_close("z to x", &turned, &[0.0, 0.0, 0.0, -1.0], 1e-15);
+        let flipped = rotate(2, DQuat::from_rotation_x(PI), &[1.0, 2.0, 3.0, 4.0]);
+        assert_all_close("half-turn", &flipped, &[1.0, -2.0, -3.0, 4.0], 1e-14);
+    }
+
+    #[test]
+    fn the_identity_is_exact() {
+        let f: Vec<f64> = (0..64).map(f64::from).collect();
+        assert_all_close("f", &rotate(8, DQuat::IDENTITY, &f), &f, 1e-13);
+    }
+
+    #[test]
+    fn bands_lie_where_the_layout_says() {
+        let rotation = Rotation::from_quaternion(8, DQuat::from_rotation_y(0.4)).unwrap();
+        assert_eq!(rotation.matrices().len(), 8 * (4 * 64 - 1) / 3);
+        for l in 0..8 {
+            assert_eq!(rotation.band(l).len(), (2 * l + 1) * (2 * l + 1));
+            assert_eq!(rotation.band(l)[0], rotation.matrices()[band_start(l)]);
+        }
+        assert!(rotation.band(8).is_empty());
+    }
+
+    #[test]
+    fn rgb_is_three_channels() {
+        let rotation = Rotation::from_quaternion(2, DQuat::from_rotation_x(0.3)).unwrap();
+        let plane = [1.0, -2.0, 0.5, 3.0];
+        let mut expected = [0.0; 4];
+        rotation.apply(&plane, &mut expected).unwrap();
+        let rgb = rotation.apply_rgb(&plane.map(|c| [c, 2.0 * c, 0.0])).unwrap();
+        for (actual, e) in rgb.iter().zip(expected) {
+            assert_all_close("rgb", actual, &[e, 2.0 * e, 0.0], 1e-15);
+        }
+    }
+
+    #[test]
+    fn refuses_no_rotation_and_other_orders() {
+        let zero = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        assert!(matches!(Rotation::from_quaternion(3, zero), Err(MathError::Quaternion { .. })));
+        for bad in [f64::NAN, f64::INFINITY] {
+            let q = DQuat::from_xyzw(0.0, bad, 0.0, 1.0);
+            assert!(matches!(Rotation::from_quaternion(3, q), Err(MathError::Quaternion { .. })));
+        }
+        for order in [0, 9] {
+            assert_eq!(Rotation::from_quaternion(order, DQuat::IDENTITY), Err(MathError::Order { order }));
+        }
+        let rotation = Rotation::from_quaternion(2, DQuat::IDENTITY).unwrap();
+        assert!(matches!(rotation.apply(&[0.0; 4], &mut [0.0; 3]), Err(MathError::Length { .. })));
+        assert!(matches!(rotation.apply_rgb(&[[0.0; 3]; 5]), Err(MathError::Length { .. })));
+    }
+}
