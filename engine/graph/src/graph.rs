@@ -91,6 +91,14 @@ pub(crate) struct Declaration {
     pub left_out: Vec<LeftOut>,
 }
 
+/// `name`, or `name#2`, `name#3` … where it is taken: messages and printed plans stay unambiguous when one pass
+/// is added for several meshes.
+fn unique<'a>(name: &str, taken: impl Iterator<Item = &'a String> + Clone) -> String {
+    let free = |candidate: &str| taken.clone().all(|other| other != candidate);
+    let numbered = (2..).map(|n: u64| format!("{name}#{n}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(|name| free(name)).unwrap_or_default()
+}
+
 /// A frame, declared by use. `R` is what each pass carries for whoever records it.
 ///
 /// Nothing is checked while declaring; [`compile`](Self::compile) reports the first thing wrong, in a fixed order.
@@ -150,17 +158,14 @@ impl<R> Graph<R> {
 
     fn add<T: Kind>(&mut self, name: &str, desc: ResourceDesc, origin: Origin) -> Handle<T> {
         let resource = ResourceId(u32::try_from(self.declaration.resources.len()).unwrap_or(u32::MAX));
-        self.declaration.resources.push(Resource {
-            name: name.to_owned(),
-            desc,
-            origin,
-            versions: Vec::new(),
-        });
+        let name = unique(name, self.declaration.resources.iter().map(|resource| &resource.name));
+        self.declaration.resources.push(Resource { name, desc, origin, versions: Vec::new() });
         Handle::new(resource, 0, ImageRange::WHOLE)
     }
 
     /// Declares a pass; say what it uses on the builder this returns, and give it its payload there.
     pub fn pass(&mut self, name: &str, kind: PassKind) -> PassBuilder<'_, R> {
+        let name = unique(name, self.declaration.passes.iter().map(|pass| &pass.name));
         self.declaration.passes.push(Pass::new(name, kind));
         self.payloads.push(None);
         PassBuilder::new(self)

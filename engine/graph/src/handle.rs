@@ -73,15 +73,18 @@ impl ImageRange {
 
     /// Whether two resolved ranges share a subresource.
     pub fn overlaps(self, other: Self) -> bool {
-        let meet = |a: u32, count_a: u32, b: u32, count_b: u32| a < b + count_b && b < a + count_a;
+        let meet = |a: u32, count_a: u32, b: u32, count_b: u32| {
+            a < b.saturating_add(count_b) && b < a.saturating_add(count_a)
+        };
         meet(self.base_mip, self.mips, other.base_mip, other.mips)
             && meet(self.base_layer, self.layers, other.base_layer, other.layers)
     }
 
     /// The (mip, layer) pairs of a resolved range, mip by mip.
     pub fn subresources(self) -> impl Iterator<Item = (u32, u32)> {
-        (self.base_mip..self.base_mip + self.mips)
-            .flat_map(move |mip| (self.base_layer..self.base_layer + self.layers).map(move |l| (mip, l)))
+        (self.base_mip..self.base_mip.saturating_add(self.mips)).flat_map(move |mip| {
+            (self.base_layer..self.base_layer.saturating_add(self.layers)).map(move |l| (mip, l))
+        })
     }
 }
 

@@ -42,8 +42,8 @@ pub(crate) struct Pass {
 }
 
 impl Pass {
-    pub(crate) fn new(name: &str, kind: PassKind) -> Self {
-        Self { name: name.to_owned(), kind, uses: Vec::new(), side_effect: false, async_suitable: false }
+    pub(crate) fn new(name: String, kind: PassKind) -> Self {
+        Self { name, kind, uses: Vec::new(), side_effect: false, async_suitable: false }
     }
 }
 

@@ -1,14 +1,94 @@
-//! From a declaration to a plan, in named phases.
+//! From a declaration to a plan, in named phases, one file each:
+//! validate -> hazards -> order -> cull -> lifetimes -> barriers.
+//!
+//! Hazards come before order: order relies on each resource's versions being one chain, which is what the
+//! hazards phase proves.
+
+mod barriers;
+mod coalesce;
+mod cull;
+mod epochs;
+mod hazards;
+mod history;
+mod lifetimes;
+mod order;
+mod validate;
 
 use crate::error::GraphError;
-use crate::graph::{Graph, Limits};
-use crate::plan::Plan;
+use crate::graph::{Declaration, Graph, Limits};
+use crate::pass::{Pass, Use};
+use crate::plan::{Plan, PlanAccess, Step};
+use ash::vk;
+use history::History;
 
 pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits) -> Result<Plan<R>, GraphError> {
-    let _ = limits;
-    Err(GraphError::Pass {
-        pass: graph.declaration.passes.first().map(|p| p.name.clone()).unwrap_or_default(),
-        problem: "the phases of the compiler are not linked in".to_owned(),
-        mend: "wait for the next revision".to_owned(),
+    let Graph { mut declaration, payloads } = graph;
+    validate::validate(&mut declaration, limits)?;
+    let payloads = require_payloads(&declaration, payloads)?;
+    let history = History::of(&declaration);
+    hazards::hazards(&declaration, &history)?;
+    let order = order::order(&declaration, &history)?;
+    let cull = cull::cull(&declaration, &history);
+    let order: Vec<usize> = order.into_iter().filter(|pass| cull.alive[*pass]).collect();
+    let resources = lifetimes::lifetimes(&declaration, &order);
+    let barriers = barriers::barriers(&declaration, &order, limits);
+    Ok(Plan {
+        steps: steps(declaration.passes, payloads, &order, barriers.steps),
+        resources,
+        acquires: barriers.acquires,
+        final_barriers: barriers.exits,
+        releases: barriers.releases,
+        culled: cull.culled,
+        left_out: declaration.left_out,
     })
+}
+
+fn require_payloads<R>(declaration: &Declaration, payloads: Vec<Option<R>>) -> Result<Vec<R>, GraphError> {
+    let with_names = payloads.into_iter().zip(&declaration.passes);
+    with_names
+        .map(|(payload, pass)| {
+            payload.ok_or_else(|| GraphError::Pass {
+                pass: pass.name.clone(),
+                problem: "has no payload".to_owned(),
+                mend: "end its declaration with `record`".to_owned(),
+            })
+        })
+        .collect()
+}
+
+/// Puts passes, payloads and barriers together, in order.
+fn steps<R>(
+    passes: Vec<Pass>,
+    payloads: Vec<R>,
+    order: &[usize],
+    barriers: Vec<crate::plan::Barriers>,
+) -> Vec<Step<R>> {
+    let mut declared: Vec<Option<(Pass, R)>> = passes.into_iter().zip(payloads).map(Some).collect();
+    let ordered = order.iter().filter_map(|pass| declared[*pass].take());
+    ordered
+        .zip(barriers)
+        .map(|((pass, payload), barriers)| Step {
+            accesses: pass.uses.iter().map(plan_access).collect(),
+            name: pass.name,
+            kind: pass.kind,
+            async_suitable: pass.async_suitable,
+            barriers,
+            payload,
+        })
+        .collect()
+}
+
+fn plan_access(declared: &Use) -> PlanAccess {
+    let Use { resource, version, output, range, access, keeps, is_image } = *declared;
+    PlanAccess {
+        resource,
+        range,
+        access,
+        stage: access.stage(),
+        flags: access.access(),
+        layout: if is_image { access.layout() } else { vk::ImageLayout::UNDEFINED },
+        version,
+        output,
+        keeps_contents: keeps,
+    }
 }

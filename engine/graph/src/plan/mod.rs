@@ -1,8 +1,13 @@
 //! The plan: what to do, in which order, behind which barriers, and what is not done and why.
 
 mod barrier;
+mod bytes;
+mod json;
+mod mermaid;
+mod text;
 
 pub use barrier::{Barriers, BufferBarrier, Cause, ImageBarrier};
+pub use bytes::PlanBytes;
 
 use crate::access::Access;
 use crate::graph::LeftOut;

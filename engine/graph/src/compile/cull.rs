@@ -1,0 +1,77 @@
+//! Phase 4: passes that reach no export, no import and no side effect are left out, with the reason.
+
+use super::history::History;
+use crate::graph::Declaration;
+use crate::handle::{ImageRange, ResourceId};
+use crate::plan::{CullReason, Culled};
+use crate::resource::Origin;
+
+pub(super) struct Cull {
+    /// By index of declaration.
+    pub alive: Vec<bool>,
+    pub culled: Vec<Culled>,
+}
+
+pub(super) fn cull(declaration: &Declaration, history: &History) -> Cull {
+    let mut alive = vec![false; declaration.passes.len()];
+    let mut needed = roots(declaration, history);
+    while let Some(pass) = needed.pop() {
+        if std::mem::replace(&mut alive[pass], true) {
+            continue;
+        }
+        for used in declaration.passes[pass].uses.iter().filter(|used| used.keeps) {
+            needed.extend(history.writers(used.resource, used.version, used.range));
+        }
+    }
+    let dead = (0..alive.len()).filter(|pass| !alive[*pass]);
+    let culled = dead
+        .map(|pass| Culled {
+            pass: declaration.passes[pass].name.clone(),
+            reason: reason(declaration, history, pass),
+        })
+        .collect();
+    Cull { alive, culled }
+}
+
+/// Passes needed for their own sake: side effects, and writers of what outlives the plan.
+fn roots(declaration: &Declaration, history: &History) -> Vec<usize> {
+    let passes = declaration.passes.iter().enumerate();
+    let mut roots: Vec<usize> = passes.filter(|(_, pass)| pass.side_effect).map(|(i, _)| i).collect();
+    for export in &declaration.exports {
+        roots.extend(history.writers(export.resource, export.version, export.range));
+    }
+    for (index, resource) in declaration.resources.iter().enumerate() {
+        if let Origin::Imported { .. } = resource.origin {
+            let (mips, layers) = resource.desc.subresources();
+            let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
+            roots.extend(history.writers(ResourceId(index as u32), u32::MAX, whole));
+        }
+    }
+    roots
+}
+
+/// Why nothing needs a pass that is not alive.
+fn reason(declaration: &Declaration, history: &History, pass: usize) -> CullReason {
+    let writes = declaration.passes[pass].uses.iter().filter(|used| used.output.is_some());
+    let mut written: Vec<ResourceId> = writes.map(|used| used.resource).collect();
+    written.sort_unstable();
+    written.dedup();
+    if written.is_empty() {
+        return CullReason::WritesNothing;
+    }
+    let mut readers: Vec<usize> = Vec::new();
+    for resource in &written {
+        let reads = history.life(*resource).reads.iter();
+        let of_this = reads.filter(|r| history.writers(*resource, r.version, r.range).contains(&pass));
+        readers.extend(of_this.map(|read| read.pass));
+    }
+    readers.sort_unstable();
+    readers.dedup();
+    let resources = written.iter().map(|r| declaration.resources[r.index()].name.clone()).collect();
+    if readers.is_empty() {
+        CullReason::Unread { resources }
+    } else {
+        let readers = readers.iter().map(|reader| declaration.passes[*reader].name.clone()).collect();
+        CullReason::ReadOnlyByCulled { resources, readers }
+    }
+}

@@ -1,0 +1,114 @@
+//! Phase 2: versions form one chain, nothing is read that nobody wrote, nothing exported is overwritten.
+
+use super::history::History;
+use crate::error::GraphError;
+use crate::graph::{Declaration, Resource};
+use crate::handle::{ImageRange, ResourceId};
+use crate::resource::Origin;
+use ash::vk;
+
+pub(super) fn hazards(declaration: &Declaration, history: &History) -> Result<(), GraphError> {
+    for resource in &declaration.resources {
+        check_chain(declaration, resource)?;
+    }
+    for pass in &declaration.passes {
+        for used in pass.uses.iter().filter(|used| used.keeps) {
+            if let Some((mip, layer)) =
+                first_unwritten(declaration, history, used.resource, used.version, used.range)
+            {
+                return Err(GraphError::ReadOfNeverWritten {
+                    resource: declaration.resources[used.resource.index()].name.clone(),
+                    version: used.version,
+                    mip,
+                    layer,
+                    pass: pass.name.clone(),
+                });
+            }
+        }
+    }
+    check_exports(declaration, history)
+}
+
+/// Version n + 1 must be written over version n.
+fn check_chain(declaration: &Declaration, resource: &Resource) -> Result<(), GraphError> {
+    let name = |pass: usize| declaration.passes[pass].name.clone();
+    for (i, version) in resource.versions.iter().enumerate() {
+        let parent = version.parent as usize;
+        if parent == i {
+            continue;
+        }
+        if parent > i {
+            return Err(GraphError::Pass {
+                pass: name(version.writer),
+                problem: format!("it writes version {parent} of `{}`, which is not there yet", resource.name),
+                mend: "use only handles this graph returned".to_owned(),
+            });
+        }
+        let newest_writer = name(resource.versions[i - 1].writer);
+        return Err(if parent + 1 == i {
+            GraphError::TwoWriters {
+                resource: resource.name.clone(),
+                version: version.parent,
+                first: newest_writer,
+                second: name(version.writer),
+            }
+        } else {
+            GraphError::WriteToOldVersion {
+                resource: resource.name.clone(),
+                version: version.parent,
+                pass: name(version.writer),
+                newest: version.parent + (i - parent) as u32,
+                newest_writer,
+            }
+        });
+    }
+    Ok(())
+}
+
+/// The first mip and layer of a range in which a version has no contents.
+fn first_unwritten(
+    declaration: &Declaration,
+    history: &History,
+    resource: ResourceId,
+    version: u32,
+    range: ImageRange,
+) -> Option<(u32, u32)> {
+    let declared = &declaration.resources[resource.index()];
+    let filled_before = match declared.origin {
+        Origin::Transient => false,
+        Origin::Imported { entry, .. } => {
+            !declared.desc.is_image() || entry.layout != vk::ImageLayout::UNDEFINED
+        }
+    };
+    let mut at = range.subresources();
+    if filled_before { None } else { at.find(|at| history.writer(resource, version, *at).is_none()) }
+}
+
+fn check_exports(declaration: &Declaration, history: &History) -> Result<(), GraphError> {
+    for export in &declaration.exports {
+        let resource = &declaration.resources[export.resource.index()];
+        let unwritten = first_unwritten(declaration, history, export.resource, export.version, export.range);
+        if let Some((mip, layer)) = unwritten {
+            return Err(GraphError::Export {
+                resource: resource.name.clone(),
+                problem: format!(
+                    "nothing has written mip {mip}, layer {layer} of version {}",
+                    export.version
+                ),
+                mend: "export the handle that the pass writing it returned".to_owned(),
+            });
+        }
+        let life = history.life(export.resource);
+        let later = |version: u32| version > export.version;
+        if let Some(write) = life.writes.iter().find(|w| later(w.version) && w.range.overlaps(export.range)) {
+            let exported = life.writes.iter().find(|w| w.version == export.version);
+            return Err(GraphError::UseAfterExport {
+                resource: resource.name.clone(),
+                version: export.version,
+                exported_writer: exported.map(|w| declaration.passes[w.pass].name.clone()),
+                pass: declaration.passes[write.pass].name.clone(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,27 @@
+//! Phase 5: from which step to which step each resource is in use.
+
+use crate::graph::Declaration;
+use crate::plan::{Lifetime, PlanResource};
+
+pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanResource> {
+    let mut lifetimes: Vec<Option<Lifetime>> = vec![None; declaration.resources.len()];
+    for (step, pass) in order.iter().enumerate() {
+        for used in &declaration.passes[*pass].uses {
+            let lifetime = &mut lifetimes[used.resource.index()];
+            let first = lifetime.map_or(step, |lifetime| lifetime.first);
+            *lifetime = Some(Lifetime { first, last: step });
+        }
+    }
+    let exported = |index: usize| declaration.exports.iter().any(|e| e.resource.index() == index);
+    let resources = declaration.resources.iter().zip(lifetimes).enumerate();
+    resources
+        .map(|(index, (resource, lifetime))| PlanResource {
+            name: resource.name.clone(),
+            desc: resource.desc,
+            origin: resource.origin,
+            lifetime,
+            exported: exported(index),
+            bytes: resource.desc.bytes(),
+        })
+        .collect()
+}

@@ -1,0 +1,118 @@
+//! Phase 3: a topological order (Kahn 1962), the pass declared first going first among those that are ready.
+
+use super::history::{History, Life, contains};
+use crate::error::GraphError;
+use crate::graph::Declaration;
+use crate::handle::{ImageRange, ResourceId};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// For each pass, the passes that must come after it.
+type Successors = Vec<Vec<usize>>;
+
+/// A read that must come before the write that replaces what it reads.
+#[derive(Clone, Copy, Debug)]
+struct ReadBefore {
+    resource: ResourceId,
+    version: u32,
+}
+
+pub(super) fn order(declaration: &Declaration, history: &History) -> Result<Vec<usize>, GraphError> {
+    let count = declaration.passes.len();
+    let mut edges = BTreeMap::new();
+    for (index, resource) in declaration.resources.iter().enumerate() {
+        let id = ResourceId(index as u32);
+        let (mips, layers) = resource.desc.subresources();
+        let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
+        for at in whole.subresources() {
+            add_edges(&mut edges, id, history.life(id), at);
+        }
+    }
+    let mut successors: Successors = vec![Vec::new(); count];
+    let mut waits_for = vec![0usize; count];
+    for (from, to) in edges.keys() {
+        successors[*from].push(*to);
+        waits_for[*to] += 1;
+    }
+    let mut ready: BinaryHeap<Reverse<usize>> =
+        (0..count).filter(|pass| waits_for[*pass] == 0).map(Reverse).collect();
+    let mut order = Vec::with_capacity(count);
+    while let Some(Reverse(pass)) = ready.pop() {
+        order.push(pass);
+        for next in &successors[pass] {
+            waits_for[*next] -= 1;
+            if waits_for[*next] == 0 {
+                ready.push(Reverse(*next));
+            }
+        }
+    }
+    if order.len() == count { Ok(order) } else { Err(cycle(declaration, &edges, &successors)) }
+}
+
+/// Adds what one subresource demands: writer before reader, reader before the next writer, writer before the
+/// next writer. Only the second kind can point backwards in the order of declaration, and it alone is named.
+fn add_edges(
+    edges: &mut BTreeMap<(usize, usize), Option<ReadBefore>>,
+    resource: ResourceId,
+    life: &Life,
+    at: (u32, u32),
+) {
+    let mut add = |from: usize, to: usize, read: Option<ReadBefore>| {
+        // A pass that reads and writes one part waits only for the passes before it.
+        if from != to {
+            edges.entry((from, to)).or_insert(read);
+        }
+    };
+    let writes: Vec<_> = life.writes.iter().filter(|write| contains(write.range, at)).collect();
+    for pair in writes.windows(2) {
+        add(pair[0].pass, pair[1].pass, None);
+    }
+    for read in life.reads.iter().filter(|read| contains(read.range, at)) {
+        let next = writes.partition_point(|write| write.version <= read.version);
+        if let Some(writer) = next.checked_sub(1).map(|last| writes[last].pass) {
+            add(writer, read.pass, None);
+        }
+        if let Some(writer) = writes.get(next) {
+            add(read.pass, writer.pass, Some(ReadBefore { resource, version: read.version }));
+        }
+    }
+}
+
+/// Names a read that closes a cycle: it points backwards, and its writer leads on to the reader.
+fn cycle(
+    declaration: &Declaration,
+    edges: &BTreeMap<(usize, usize), Option<ReadBefore>>,
+    successors: &Successors,
+) -> GraphError {
+    let name = |pass: usize| declaration.passes[pass].name.clone();
+    let backwards = edges.iter().filter(|((reader, writer), _)| reader > writer);
+    for ((reader, writer), read) in backwards {
+        if let (Some(read), true) = (read, leads_to(successors, *writer, *reader)) {
+            return GraphError::Cycle {
+                resource: declaration.resources[read.resource.index()].name.clone(),
+                version: read.version,
+                reader: name(*reader),
+                writer: name(*writer),
+            };
+        }
+    }
+    GraphError::Pass {
+        pass: declaration.passes.iter().map(|pass| pass.name.as_str()).collect::<Vec<_>>().join("`, `"),
+        problem: "wait for each other".to_owned(),
+        mend: "use only handles this graph returned, each after it was returned".to_owned(),
+    }
+}
+
+fn leads_to(successors: &Successors, from: usize, to: usize) -> bool {
+    let mut seen = vec![false; successors.len()];
+    let mut stack = vec![from];
+    while let Some(pass) = stack.pop() {
+        if pass == to {
+            return true;
+        }
+        if !std::mem::replace(&mut seen[pass], true) {
+            stack.extend(&successors[pass]);
+        }
+    }
+    false
+}
