@@ -139,11 +139,11 @@ mod tests {
     /// First and second moments of the three densities in closed form.
     #[test]
     fn maps_have_their_densities() {
+        type Map = fn([f64; 2]) -> DVec3;
         let n = 1 << 12;
-        let moment = |map: fn([f64; 2]) -> DVec3, f: fn(DVec3) -> f64| {
-            (0..n).map(|i| f(map(sobol(i, 3)))).sum::<f64>() / f64::from(n)
-        };
-        let cases: [(&str, fn([f64; 2]) -> DVec3, f64, f64); 3] = [
+        let moment =
+            |map: Map, f: fn(DVec3) -> f64| (0..n).map(|i| f(map(sobol(i, 3)))).sum::<f64>() / f64::from(n);
+        let cases: [(&str, Map, f64, f64); 3] = [
             ("sphere", uniform_sphere, 0.0, 1.0 / 3.0),
             ("hemisphere", uniform_hemisphere, 0.5, 1.0 / 3.0),
             ("cosine", cosine_hemisphere, 2.0 / 3.0, 0.5),

@@ -164,7 +164,8 @@ mod tests {
     /// The corners of the table in the Vulkan specification: s_c and t_c of each face.
     #[test]
     fn faces_lie_as_vulkan_says() {
-        let table: [(Face, fn(DVec3) -> [f64; 2]); 6] = [
+        type Coordinates = fn(DVec3) -> [f64; 2];
+        let table: [(Face, Coordinates); 6] = [
             (Face::PositiveX, |r| [-r.z, -r.y]),
             (Face::NegativeX, |r| [r.z, -r.y]),
             (Face::PositiveY, |r| [r.x, r.z]),
