@@ -15,7 +15,7 @@ pub const UNIFORM_HEMISPHERE_DENSITY: f64 = 0.5 * FRAC_1_PI;
 /// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by `seed`, in [0, 1)².
 ///
 /// Every aligned run of 2^k points is stratified in all elementary intervals of area 2^-k; different seeds
-/// give independent randomisations. Components are multiples of 2^-32.
+/// give different randomisations of it. Components are multiples of 2^-32.
 #[must_use]
 pub fn sobol(index: u32, seed: u32) -> [f64; 2] {
     let unit = |bits: u32| f64::from(bits) / (1_u64 << 32) as f64;

@@ -34,7 +34,7 @@ pub struct TripleProduct {
 }
 
 impl TripleProduct {
-    /// Integrates the tensor; at order 8 some tens of milliseconds, so make it once and keep it.
+    /// Integrates the tensor; at order 8 about ten milliseconds, so make it once and keep it.
     ///
     /// # Errors
     /// [`MathError::Order`].
