@@ -1,1 +1,42 @@
 //! Vulkan under a plan: adopt a host's device, memory, pipelines, recording, timing and readback.
+//!
+//! The library never opens a device, submits, waits or starts a thread. A host hands over its device
+//! ([`Context::adopt`]), starts frames ([`Context::begin_frame`]) and has a compiled plan recorded into its own
+//! command buffer ([`Execution::record`]). Passes see only safe types: [`Recorder`], [`Resources`], [`Buffer`],
+//! [`Image`] and pipelines.
+
+mod allocator;
+mod context;
+mod error;
+mod execute;
+mod feature;
+mod frame;
+mod functions;
+mod memory;
+#[cfg(feature = "open")]
+pub mod open;
+mod pipeline;
+mod readback;
+mod recorder;
+pub mod requirements;
+mod retire;
+mod shared;
+#[cfg(feature = "surface")]
+pub mod surface;
+mod timing;
+
+pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
+pub use ash;
+pub use context::{AdoptInfo, Context};
+pub use error::GpuError;
+pub use execute::{Execution, Imports, Record, Recorded, Resources};
+pub use feature::{Feature, FeatureSet, FeatureStructs};
+pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
+pub use pipeline::{
+    BindingDesc, BindingKind, Blend, ComputePipeline, ComputePipelineDesc, DepthState, GraphicsPipeline,
+    GraphicsPipelineDesc, MAX_BINDINGS, VertexAttribute, VertexBufferLayout,
+};
+pub use readback::{Readback, texels};
+pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
+pub use requirements::Requirements;
+pub use timing::{FrameTimes, PassTime, Timing, TimingSummary};

@@ -1,0 +1,194 @@
+//! The library's side of a host's device: what `adopt` makes of raw handles.
+
+use crate::allocator::{Allocator, BlockAllocator};
+use crate::error::GpuError;
+use crate::feature::FeatureSet;
+use crate::frame::FrameSlot;
+use crate::functions;
+use crate::memory::OwnerBytes;
+use crate::requirements::{Offer, Requirements};
+use crate::shared::{DeviceFacts, Shared, lock};
+use ash::vk;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// A device as its host states it.
+///
+/// A host on another version of ash, or on none, makes the handles with `vk::Handle::from_raw`.
+pub struct AdoptInfo<'a> {
+    /// The loader's function, or the host's own in front of it.
+    pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    /// The device's function; `None` asks the instance for it.
+    pub get_device_proc_addr: Option<vk::PFN_vkGetDeviceProcAddr>,
+    /// The instance.
+    pub instance: vk::Instance,
+    /// API version the instance was created for.
+    pub api_version: u32,
+    /// The physical device.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device.
+    pub device: vk::Device,
+    /// Family of the queue that recorded commands will be submitted to.
+    pub queue_family: u32,
+    /// Features the host enabled; [`FeatureSet::of`] reads them from its structures.
+    pub features: FeatureSet,
+    /// Extensions the host enabled, of instance and device. `VK_EXT_debug_utils` among them turns on names and labels.
+    pub extensions: &'a [&'a str],
+    /// What the rooms in use ask for; [`Requirements::engine`] is added to it.
+    pub requirements: &'a Requirements,
+    /// The host's memory, or `None` for blocks of our own.
+    pub allocator: Option<Box<dyn Allocator>>,
+    /// The host's pipeline cache, or null.
+    pub pipeline_cache: vk::PipelineCache,
+    /// How many frames may be on the device or being recorded at once, at least 1.
+    pub frames_in_flight: u32,
+}
+
+/// A host's device, seen from the library. Many can live in one process; there are no statics.
+///
+/// It never submits, never waits, and makes no queue, thread or pool of command buffers.
+pub struct Context {
+    /// Dropped before `shared`: the slots' buffers retire into it.
+    slots: Vec<Mutex<FrameSlot>>,
+    pub(crate) shared: Arc<Shared>,
+}
+
+impl Context {
+    /// Adopts a host's device.
+    ///
+    /// # Errors
+    /// [`GpuError::MissingFunction`] with the name of the first function that get-proc-addr does not know,
+    /// [`GpuError::Missing`] with the list of everything else that is lacking, [`GpuError::Misuse`] for
+    /// `frames_in_flight` of 0.
+    ///
+    /// # Safety
+    /// - The handles are alive, belong together, and `info` states truly what was enabled on them.
+    /// - Instance and device outlive the context and everything made from it (buffers, images, pipelines,
+    ///   executions, timings), and the pipeline cache is not used by another thread while pipelines are made.
+    /// - Before the last of those is dropped, the device has finished all work that was recorded through it.
+    pub unsafe fn adopt(info: AdoptInfo<'_>) -> Result<Self, GpuError> {
+        if info.frames_in_flight == 0 {
+            return Err(GpuError::misuse("frames_in_flight", "0; at least one frame is being recorded"));
+        }
+        let debug_utils = info.extensions.contains(&"VK_EXT_debug_utils");
+        // SAFETY: the caller vouches for handles and functions.
+        let functions = unsafe {
+            functions::load(
+                info.get_instance_proc_addr,
+                info.get_device_proc_addr,
+                info.instance,
+                info.device,
+                debug_utils,
+            )?
+        };
+        // SAFETY: as above; only the functions probed are called.
+        let facts = unsafe { check(&functions, &info)? };
+        let allocator = match info.allocator {
+            Some(allocator) => allocator,
+            None => Box::new(
+                BlockAllocator::new(&functions, info.physical_device)
+                    .map_err(|reason| GpuError::Memory { what: "the allocator".to_owned(), reason })?,
+            ),
+        };
+        let shared = Arc::new(Shared::new(facts, functions, allocator));
+        let slots = (0..info.frames_in_flight).map(|_| Mutex::new(FrameSlot::new(&shared))).collect();
+        Ok(Self { slots, shared })
+    }
+
+    /// Starts frame `frame`: memory and descriptors of the frame that used the same slot are used again, and what was
+    /// dropped that long ago is destroyed. Frame 0 has begun when the context is made.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] if `frame` is not greater than the last.
+    ///
+    /// # Safety
+    /// The device has finished everything recorded in frames up to `frame - frames_in_flight`, and those command
+    /// buffers will not be submitted again. A command buffer is submitted in the frame it was recorded in.
+    pub unsafe fn begin_frame(&self, frame: u64) -> Result<(), GpuError> {
+        let last = self.shared.frame();
+        if frame <= last {
+            return Err(GpuError::misuse(
+                format!("frame {frame}"),
+                format!("frames count up, and {last} has begun"),
+            ));
+        }
+        // SAFETY: the caller vouches that the device is done with the frames in question.
+        unsafe {
+            self.shared.begin_frame(frame);
+            self.slot().reset()
+        }
+    }
+
+    /// The frame being recorded.
+    pub fn frame(&self) -> u64 {
+        self.shared.frame()
+    }
+
+    /// How many frames may be in flight.
+    pub fn frames_in_flight(&self) -> u32 {
+        self.slots.len() as u32
+    }
+
+    /// The device's limits.
+    pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.shared.facts.limits
+    }
+
+    /// The features the host enabled.
+    pub fn features(&self) -> FeatureSet {
+        self.shared.facts.features
+    }
+
+    /// Bytes and objects by owner, sorted by name; what waits to be destroyed still counts.
+    pub fn memory_report(&self) -> Vec<OwnerBytes> {
+        self.shared.ledger().report()
+    }
+
+    /// ash's device, for a host that uses it too.
+    pub fn device(&self) -> &ash::Device {
+        self.shared.device()
+    }
+
+    /// The slot of the frame being recorded.
+    pub(crate) fn slot(&self) -> MutexGuard<'_, FrameSlot> {
+        lock(&self.slots[(self.frame() % self.slots.len() as u64) as usize])
+    }
+}
+
+/// Compares what the host states, and what the device says of itself, with what is required.
+///
+/// # Safety
+/// As [`Context::adopt`].
+unsafe fn check(functions: &functions::Functions, info: &AdoptInfo<'_>) -> Result<DeviceFacts, GpuError> {
+    let requirements = Requirements::engine().and(info.requirements);
+    let instance = &functions.instance;
+    // SAFETY: the caller vouches for the handles.
+    let mut offer = unsafe { Offer::read(instance, info.physical_device, info.queue_family, &requirements) };
+    offer.api_version = offer.api_version.min(info.api_version);
+    offer.features = info.features;
+    offer.extensions = info.extensions.iter().map(|&name| name.to_owned()).collect();
+    let missing = requirements.check(&offer);
+    if !missing.is_empty() {
+        return Err(GpuError::Missing(missing));
+    }
+    let mut maintenance3 = vk::PhysicalDeviceMaintenance3Properties::default();
+    let mut maintenance4 = vk::PhysicalDeviceMaintenance4Properties::default();
+    let mut properties =
+        vk::PhysicalDeviceProperties2::default().push_next(&mut maintenance3).push_next(&mut maintenance4);
+    // SAFETY: as above; both structures are core in the version just checked, and the family's index too.
+    let queues = unsafe {
+        instance.get_physical_device_properties2(info.physical_device, &mut properties);
+        instance.get_physical_device_queue_family_properties(info.physical_device)
+    };
+    let limits = properties.properties.limits;
+    Ok(DeviceFacts {
+        physical_device: info.physical_device,
+        limits,
+        features: info.features,
+        frames_in_flight: u64::from(info.frames_in_flight),
+        max_allocation: maintenance3.max_memory_allocation_size.min(maintenance4.max_buffer_size),
+        pipeline_cache: info.pipeline_cache,
+        timestamp_valid_bits: queues
+            .get(info.queue_family as usize)
+            .map_or(0, |family| family.timestamp_valid_bits),
+    })
+}

@@ -1,0 +1,352 @@
+//! From a compiled plan to commands: makes its transients once, then replays barriers and payloads every frame.
+
+use crate::allocator::Location;
+use crate::context::Context;
+use crate::error::GpuError;
+use crate::memory::{Buffer, Image, ImageView, Label, ViewDesc};
+use crate::recorder::Recorder;
+use crate::timing::Timing;
+use airglow_graph as graph;
+use airglow_graph::{
+    Barriers, BufferBarrier, Handle, ImageBarrier, Kind, Origin, Plan, PlanResource, ResourceDesc,
+};
+use ash::vk;
+use std::time::{Duration, Instant};
+
+/// What a pass carries through the graph: the closure that records it.
+pub type Record = Box<dyn Fn(&mut Recorder<'_>, &Resources<'_>) -> Result<(), GpuError> + Send>;
+
+/// A resource of a plan made concrete.
+#[derive(Clone)]
+enum Concrete {
+    Buffer(Buffer),
+    Image(Image),
+}
+
+/// The host's resources for one recording, by the handles that imported them. Kept and changed from frame to frame.
+#[derive(Clone, Default)]
+pub struct Imports(Vec<Option<Concrete>>);
+
+impl Imports {
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Stands `buffer` in for what `handle` names.
+    pub fn buffer(&mut self, handle: &Handle<graph::Buffer>, buffer: &Buffer) -> &mut Self {
+        self.set(handle, Concrete::Buffer(buffer.clone()))
+    }
+
+    /// Stands `image` in for what `handle` names.
+    pub fn image(&mut self, handle: &Handle<graph::Image>, image: &Image) -> &mut Self {
+        self.set(handle, Concrete::Image(image.clone()))
+    }
+
+    fn set<T: Kind>(&mut self, handle: &Handle<T>, concrete: Concrete) -> &mut Self {
+        let index = handle.resource().index();
+        if self.0.len() <= index {
+            self.0.resize(index + 1, None);
+        }
+        self.0[index] = Some(concrete);
+        self
+    }
+}
+
+/// What handles name, for a pass that records.
+pub struct Resources<'a> {
+    plan: &'a Plan<Record>,
+    transients: &'a [Option<Concrete>],
+    imports: &'a Imports,
+}
+
+impl Resources<'_> {
+    /// The buffer that `handle` names.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for a handle of another graph.
+    pub fn buffer(&self, handle: &Handle<graph::Buffer>) -> Result<&Buffer, GpuError> {
+        match self.concrete(handle.resource().index()) {
+            Some(Concrete::Buffer(buffer)) => Ok(buffer),
+            _ => Err(self.unknown(handle)),
+        }
+    }
+
+    /// The image that `handle` names, whole.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for a handle of another graph.
+    pub fn image(&self, handle: &Handle<graph::Image>) -> Result<&Image, GpuError> {
+        match self.concrete(handle.resource().index()) {
+            Some(Concrete::Image(image)) => Ok(image),
+            _ => Err(self.unknown(handle)),
+        }
+    }
+
+    /// A view of the mips and layers that `handle` names: 2D for one layer, 2D array for more, 3D for a 3D image.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for a handle of another graph, or a range outside the image.
+    pub fn view(&self, handle: &Handle<graph::Image>) -> Result<ImageView, GpuError> {
+        self.view_of(handle, None)
+    }
+
+    /// A view of what `handle` names in a shape of the caller's choice, such as a cube.
+    ///
+    /// # Errors
+    /// As [`Resources::view`], and if the shape does not fit.
+    pub fn view_as(
+        &self,
+        handle: &Handle<graph::Image>,
+        dimension: vk::ImageViewType,
+    ) -> Result<ImageView, GpuError> {
+        self.view_of(handle, Some(dimension))
+    }
+
+    fn view_of(
+        &self,
+        handle: &Handle<graph::Image>,
+        dimension: Option<vk::ImageViewType>,
+    ) -> Result<ImageView, GpuError> {
+        let image = self.image(handle)?;
+        let desc = image.desc();
+        let Some(range) = handle.range().resolve(desc.mips, desc.layers) else {
+            return Err(GpuError::misuse(image.name(), "the handle's mips or layers are not the image's"));
+        };
+        let dimension = dimension.unwrap_or(match (desc.extent[2] > 1, range.layers > 1) {
+            (true, _) => vk::ImageViewType::TYPE_3D,
+            (false, true) => vk::ImageViewType::TYPE_2D_ARRAY,
+            (false, false) => vk::ImageViewType::TYPE_2D,
+        });
+        let graph::ImageRange { base_mip, mips, base_layer, layers } = range;
+        image.view(ViewDesc { dimension, base_mip, mips, base_layer, layers })
+    }
+
+    fn concrete(&self, index: usize) -> Option<&Concrete> {
+        let transient = self.transients.get(index)?.as_ref();
+        transient.or_else(|| self.imports.0.get(index)?.as_ref())
+    }
+
+    fn unknown<T: Kind>(&self, handle: &Handle<T>) -> GpuError {
+        let name = self.plan.resource(handle).map_or("a handle", |resource| &resource.name);
+        GpuError::misuse(name, "no such resource in this plan; use handles of the graph it was compiled from")
+    }
+}
+
+/// What a recording took.
+#[derive(Clone, Copy, Debug)]
+pub struct Recorded {
+    /// CPU time of recording.
+    pub cpu: Duration,
+    /// Passes recorded.
+    pub passes: usize,
+    /// Barriers recorded.
+    pub barriers: usize,
+}
+
+/// A plan with its transient resources, ready to be recorded once per frame.
+pub struct Execution {
+    plan: Plan<Record>,
+    transients: Vec<Option<Concrete>>,
+    /// Scratch, kept so that a frame allocates nothing.
+    buffer_barriers: Vec<vk::BufferMemoryBarrier2<'static>>,
+    image_barriers: Vec<vk::ImageMemoryBarrier2<'static>>,
+}
+
+impl Execution {
+    /// Makes the plan's transient resources, charged to owner `transient`.
+    ///
+    /// # Errors
+    /// Those of making buffers and images; what was made until then is freed.
+    pub fn prepare(context: &Context, plan: Plan<Record>) -> Result<Self, GpuError> {
+        let transients =
+            plan.resources().iter().map(|resource| transient(context, resource)).collect::<Result<_, _>>()?;
+        let most = |count: fn(&Barriers) -> usize| {
+            let steps = plan.steps().iter().map(|step| &step.barriers);
+            steps
+                .chain([plan.acquires(), plan.final_barriers(), plan.releases()])
+                .map(count)
+                .max()
+                .unwrap_or(0)
+        };
+        let buffer_barriers = Vec::with_capacity(most(|barriers| barriers.buffers.len()));
+        let image_barriers = Vec::with_capacity(most(|barriers| barriers.images.len()));
+        Ok(Self { plan, transients, buffer_barriers, image_barriers })
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan<Record> {
+        &self.plan
+    }
+
+    /// Records the plan into `command_buffer`: acquires, each pass behind its barriers and under its label, final
+    /// barriers, releases. With `timing`, each pass between two timestamps.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for an import that is missing or not as declared, or the error of a pass. The command
+    /// buffer is then incomplete and must not be submitted.
+    ///
+    /// # Safety
+    /// - What [`Recorder::new`] asks of the command buffer.
+    /// - Each import is in the entry state its plan declares when the commands begin, and the host takes it over in
+    ///   the declared exit state.
+    /// - Recordings of one execution run on the device in the order recorded, on one queue.
+    /// - Passes use resources as they declared.
+    pub unsafe fn record(
+        &mut self,
+        context: &Context,
+        command_buffer: vk::CommandBuffer,
+        imports: &Imports,
+        mut timing: Option<&mut Timing>,
+    ) -> Result<Recorded, GpuError> {
+        let start = Instant::now();
+        let Self { plan, transients, buffer_barriers, image_barriers } = self;
+        check_imports(context, plan, imports)?;
+        let resources = Resources { plan, transients, imports };
+        // SAFETY: the caller vouches for the command buffer.
+        let mut recorder = unsafe { Recorder::new(context, command_buffer) };
+        let mut count = 0;
+        let mut barriers = |barriers: &Barriers| {
+            count += barriers.len();
+            record_barriers(context, command_buffer, barriers, &resources, buffer_barriers, image_barriers)
+        };
+        if let Some(timing) = timing.as_deref_mut() {
+            timing.begin_frame(context, command_buffer, plan.steps().iter().map(|step| &*step.name))?;
+        }
+        barriers(plan.acquires())?;
+        for (index, step) in plan.steps().iter().enumerate() {
+            barriers(&step.barriers)?;
+            recorder.labelled(&step.name, |recorder| {
+                if let Some(timing) = timing.as_deref_mut() {
+                    timing.begin_pass(command_buffer, index);
+                }
+                let passed = (step.payload)(recorder, &resources);
+                let ended = recorder.end_pass();
+                if let Some(timing) = timing.as_deref_mut() {
+                    timing.end_pass(command_buffer, index);
+                }
+                passed.and(ended)
+            })?;
+        }
+        barriers(plan.final_barriers())?;
+        barriers(plan.releases())?;
+        Ok(Recorded { cpu: start.elapsed(), passes: plan.steps().len(), barriers: count })
+    }
+}
+
+/// A transient that some step uses, or `None`.
+fn transient(context: &Context, resource: &PlanResource) -> Result<Option<Concrete>, GpuError> {
+    if !matches!(resource.origin, Origin::Transient) || resource.lifetime.is_none() {
+        return Ok(None);
+    }
+    let label = Label::new("transient", &resource.name);
+    Ok(Some(match &resource.desc {
+        ResourceDesc::Buffer(desc) => {
+            Concrete::Buffer(context.create_buffer(label, desc, Location::Device)?)
+        }
+        ResourceDesc::Image(desc) => Concrete::Image(context.create_image(label, desc)?),
+    }))
+}
+
+/// Every import is there and is what was declared.
+fn check_imports(context: &Context, plan: &Plan<Record>, imports: &Imports) -> Result<(), GpuError> {
+    for (index, resource) in plan.resources().iter().enumerate() {
+        if matches!(resource.origin, Origin::Transient) {
+            continue;
+        }
+        let problem = match (imports.0.get(index).and_then(Option::as_ref), &resource.desc) {
+            (None, _) => "no import given; add it to Imports",
+            (Some(Concrete::Buffer(buffer)), ResourceDesc::Buffer(desc)) => {
+                if !buffer.belongs_to(&context.shared) {
+                    "the buffer was made by another context"
+                } else if buffer.size() < desc.size || !buffer.desc().usage.contains(desc.usage) {
+                    "the buffer is smaller than declared or lacks usages"
+                } else {
+                    continue;
+                }
+            }
+            (Some(Concrete::Image(image)), ResourceDesc::Image(desc)) => {
+                let usage = image.desc().usage;
+                if !image.belongs_to(&context.shared) {
+                    "the image was made by another context"
+                } else if (graph::ImageDesc { usage, ..*desc }) != *image.desc()
+                    || !usage.contains(desc.usage)
+                {
+                    "the image has not the extent, format, mips, layers or usage declared"
+                } else {
+                    continue;
+                }
+            }
+            (Some(_), _) => "a buffer given for an image, or an image for a buffer",
+        };
+        return Err(GpuError::misuse(&*resource.name, problem));
+    }
+    Ok(())
+}
+
+fn record_barriers(
+    context: &Context,
+    command_buffer: vk::CommandBuffer,
+    barriers: &Barriers,
+    resources: &Resources<'_>,
+    buffers: &mut Vec<vk::BufferMemoryBarrier2<'static>>,
+    images: &mut Vec<vk::ImageMemoryBarrier2<'static>>,
+) -> Result<(), GpuError> {
+    if barriers.is_empty() {
+        return Ok(());
+    }
+    buffers.clear();
+    images.clear();
+    for barrier in &barriers.buffers {
+        match resources.concrete(barrier.resource.index()) {
+            Some(Concrete::Buffer(buffer)) => buffers.push(buffer_barrier(barrier, buffer)),
+            _ => {
+                return Err(GpuError::misuse("a buffer barrier", "the plan names a buffer that is not there"));
+            }
+        }
+    }
+    for barrier in &barriers.images {
+        match resources.concrete(barrier.resource.index()) {
+            Some(Concrete::Image(image)) => images.push(image_barrier(barrier, image)),
+            _ => {
+                return Err(GpuError::misuse("an image barrier", "the plan names an image that is not there"));
+            }
+        }
+    }
+    let info = vk::DependencyInfo::default().buffer_memory_barriers(buffers).image_memory_barriers(images);
+    // SAFETY: live resources of this device; `Execution::record` has the caller vouch for the command buffer.
+    unsafe { context.shared.device().cmd_pipeline_barrier2(command_buffer, &info) };
+    Ok(())
+}
+
+fn buffer_barrier(barrier: &BufferBarrier, buffer: &Buffer) -> vk::BufferMemoryBarrier2<'static> {
+    vk::BufferMemoryBarrier2::default()
+        .src_stage_mask(barrier.src_stage)
+        .src_access_mask(barrier.src_access)
+        .dst_stage_mask(barrier.dst_stage)
+        .dst_access_mask(barrier.dst_access)
+        .src_queue_family_index(barrier.src_queue_family)
+        .dst_queue_family_index(barrier.dst_queue_family)
+        .buffer(buffer.raw())
+        .size(vk::WHOLE_SIZE)
+}
+
+fn image_barrier(barrier: &ImageBarrier, image: &Image) -> vk::ImageMemoryBarrier2<'static> {
+    vk::ImageMemoryBarrier2::default()
+        .src_stage_mask(barrier.src_stage)
+        .src_access_mask(barrier.src_access)
+        .dst_stage_mask(barrier.dst_stage)
+        .dst_access_mask(barrier.dst_access)
+        .old_layout(barrier.old_layout)
+        .new_layout(barrier.new_layout)
+        .src_queue_family_index(barrier.src_queue_family)
+        .dst_queue_family_index(barrier.dst_queue_family)
+        .image(image.raw())
+        .subresource_range(vk::ImageSubresourceRange {
+            aspect_mask: barrier.aspects,
+            base_mip_level: barrier.range.base_mip,
+            level_count: barrier.range.mips,
+            base_array_layer: barrier.range.base_layer,
+            layer_count: barrier.range.layers,
+        })
+}

@@ -1,0 +1,325 @@
+//! Images and views of their mips and layers.
+
+use super::Label;
+use crate::allocator::{Allocation, Location};
+use crate::context::Context;
+use crate::error::GpuError;
+use crate::retire::Retired;
+use crate::shared::{Shared, lock};
+use airglow_graph::ImageDesc;
+use ash::vk;
+use std::sync::{Arc, Mutex};
+
+/// Which part of an image is seen, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewDesc {
+    /// Shape of the view.
+    pub dimension: vk::ImageViewType,
+    /// First mip level.
+    pub base_mip: u32,
+    /// Number of mip levels.
+    pub mips: u32,
+    /// First array layer.
+    pub base_layer: u32,
+    /// Number of array layers.
+    pub layers: u32,
+}
+
+impl ViewDesc {
+    /// One mip of one layer, as rendering and storage writes want it.
+    pub fn single(mip: u32, layer: u32) -> Self {
+        Self { dimension: vk::ImageViewType::TYPE_2D, base_mip: mip, mips: 1, base_layer: layer, layers: 1 }
+    }
+}
+
+/// An image. Clones refer to the same image; the last one dropped retires it and its views.
+#[derive(Clone)]
+pub struct Image(Arc<Inner>);
+
+struct Inner {
+    shared: Arc<Shared>,
+    raw: vk::Image,
+    name: String,
+    desc: ImageDesc,
+    views: Mutex<Vec<(ViewDesc, vk::ImageView)>>,
+    memory: Option<Allocation>,
+    ledger: usize,
+}
+
+/// A view of an image; keeps the image.
+#[derive(Clone)]
+pub struct ImageView {
+    image: Image,
+    raw: vk::ImageView,
+    desc: ViewDesc,
+}
+
+impl Image {
+    pub(crate) fn new(shared: &Arc<Shared>, label: Label<'_>, desc: &ImageDesc) -> Result<Self, GpuError> {
+        let info = create_info(desc);
+        check(shared, label, desc, &info)?;
+        let device = shared.device();
+        // SAFETY: a live device and a checked description; on an error the image made so far is destroyed.
+        let (raw, memory) = unsafe {
+            let raw = device.create_image(&info, None).map_err(GpuError::vulkan("vkCreateImage"))?;
+            let memory = shared
+                .allocate(label.name, device.get_image_memory_requirements(raw), Location::Device, false)
+                .inspect_err(|_| device.destroy_image(raw, None))?;
+            if let Err(result) = device.bind_image_memory(raw, memory.memory, memory.offset) {
+                device.destroy_image(raw, None);
+                shared.free(memory);
+                return Err(GpuError::Vulkan { call: "vkBindImageMemory", result });
+            }
+            (raw, memory)
+        };
+        shared.name(raw, vk::ObjectType::IMAGE, label.name);
+        let ledger = shared.ledger().add(label.owner, memory.size);
+        Ok(Self::from_parts(shared, raw, label, desc, Some(memory), ledger))
+    }
+
+    fn from_parts(
+        shared: &Arc<Shared>,
+        raw: vk::Image,
+        label: Label<'_>,
+        desc: &ImageDesc,
+        memory: Option<Allocation>,
+        ledger: usize,
+    ) -> Self {
+        Self(Arc::new(Inner {
+            shared: Arc::clone(shared),
+            raw,
+            name: label.name.to_owned(),
+            desc: *desc,
+            views: Mutex::default(),
+            memory,
+            ledger,
+        }))
+    }
+
+    /// The Vulkan handle, for the host's own commands. It dies with the last clone, frames later.
+    pub fn raw(&self) -> vk::Image {
+        self.0.raw
+    }
+
+    /// The name it was made with.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// What it is: extent, format, mips, layers, usage. The same description imports it into a graph.
+    pub fn desc(&self) -> &ImageDesc {
+        &self.0.desc
+    }
+
+    /// Width, height and depth in texels of mip `mip`.
+    pub fn extent(&self, mip: u32) -> [u32; 3] {
+        self.0.desc.extent.map(|size| size.checked_shr(mip).unwrap_or(0).max(1))
+    }
+
+    /// The view of the whole image: 2D, 2D array (more than one layer) or 3D. Cube views are asked for by [`Image::view`].
+    ///
+    /// # Errors
+    /// As [`Image::view`].
+    pub fn full_view(&self) -> Result<ImageView, GpuError> {
+        let dimension = match (self.0.desc.extent[2] > 1, self.0.desc.layers > 1) {
+            (true, _) => vk::ImageViewType::TYPE_3D,
+            (false, true) => vk::ImageViewType::TYPE_2D_ARRAY,
+            (false, false) => vk::ImageViewType::TYPE_2D,
+        };
+        self.view(ViewDesc {
+            dimension,
+            base_mip: 0,
+            mips: self.0.desc.mips,
+            base_layer: 0,
+            layers: self.0.desc.layers,
+        })
+    }
+
+    /// A view, made on first asking and kept with the image.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] if the mips or layers leave the image or do not fit the shape.
+    pub fn view(&self, desc: ViewDesc) -> Result<ImageView, GpuError> {
+        let mut views = lock(&self.0.views);
+        if let Some(&(_, raw)) = views.iter().find(|(known, _)| *known == desc) {
+            return Ok(ImageView { image: self.clone(), raw, desc });
+        }
+        self.check_view(&desc)?;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.0.raw)
+            .view_type(desc.dimension)
+            .format(self.0.desc.format)
+            .subresource_range(vk::ImageSubresourceRange {
+                aspect_mask: seen_aspect(&self.0.desc),
+                base_mip_level: desc.base_mip,
+                level_count: desc.mips,
+                base_array_layer: desc.base_layer,
+                layer_count: desc.layers,
+            });
+        let device = self.0.shared.device();
+        // SAFETY: a live image of this device and a range checked against it.
+        let raw = unsafe { device.create_image_view(&info, None) }
+            .map_err(GpuError::vulkan("vkCreateImageView"))?;
+        self.0.shared.name(raw, vk::ObjectType::IMAGE_VIEW, self.name());
+        views.push((desc, raw));
+        Ok(ImageView { image: self.clone(), raw, desc })
+    }
+
+    fn check_view(&self, desc: &ViewDesc) -> Result<(), GpuError> {
+        let within = |base: u32, count: u32, all: u32| {
+            count > 0 && base.checked_add(count).is_some_and(|end| end <= all)
+        };
+        let shape = match desc.dimension {
+            vk::ImageViewType::TYPE_2D => desc.layers == 1 && self.0.desc.extent[2] == 1,
+            vk::ImageViewType::TYPE_2D_ARRAY => self.0.desc.extent[2] == 1,
+            vk::ImageViewType::TYPE_3D => desc.layers == 1 && self.0.desc.extent[2] > 1,
+            vk::ImageViewType::CUBE => desc.layers == 6 && self.0.desc.cube,
+            _ => false,
+        };
+        let fits = within(desc.base_mip, desc.mips, self.0.desc.mips)
+            && within(desc.base_layer, desc.layers, self.0.desc.layers);
+        if shape && fits {
+            return Ok(());
+        }
+        let (mips, layers) = (self.0.desc.mips, self.0.desc.layers);
+        Err(GpuError::misuse(
+            self.name(),
+            format!("no {desc:?} of an image with {mips} mips and {layers} layers"),
+        ))
+    }
+
+    pub(crate) fn belongs_to(&self, shared: &Arc<Shared>) -> bool {
+        Arc::ptr_eq(&self.0.shared, shared)
+    }
+}
+
+impl ImageView {
+    /// The Vulkan handle.
+    pub fn raw(&self) -> vk::ImageView {
+        self.raw
+    }
+
+    /// The image.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// What is seen.
+    pub fn desc(&self) -> ViewDesc {
+        self.desc
+    }
+
+    /// The one aspect seen: depth, where there is stencil too.
+    pub(crate) fn aspect(&self) -> vk::ImageAspectFlags {
+        seen_aspect(self.image.desc())
+    }
+
+    /// Width and height in texels of the view's first mip.
+    pub fn extent(&self) -> [u32; 2] {
+        let [width, height, _] = self.image.extent(self.desc.base_mip);
+        [width, height]
+    }
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        let views = std::mem::take(&mut *lock(&self.views)).into_iter().map(|(_, view)| view).collect();
+        let Some(memory) = self.memory.take() else {
+            self.shared.ledger().remove(self.ledger, 0);
+            return self.shared.retire(Retired::Views(views));
+        };
+        let bytes = memory.size;
+        self.shared.retire(Retired::Image {
+            raw: self.raw,
+            views,
+            memory: Some(memory),
+            ledger: self.ledger,
+            bytes,
+        });
+    }
+}
+
+/// The one aspect a view shows: depth, where there is stencil too.
+fn seen_aspect(desc: &ImageDesc) -> vk::ImageAspectFlags {
+    let all = desc.aspects();
+    if all.contains(vk::ImageAspectFlags::DEPTH) { vk::ImageAspectFlags::DEPTH } else { all }
+}
+
+/// The description as Vulkan takes it.
+fn create_info<'a>(desc: &ImageDesc) -> vk::ImageCreateInfo<'a> {
+    let three = desc.extent[2] > 1;
+    vk::ImageCreateInfo::default()
+        .flags(if desc.cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { Default::default() })
+        .image_type(if three { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
+        .format(desc.format)
+        .extent(vk::Extent3D { width: desc.extent[0], height: desc.extent[1], depth: desc.extent[2] })
+        .mip_levels(desc.mips)
+        .array_layers(desc.layers)
+        .samples(desc.samples)
+        .usage(desc.usage)
+}
+
+/// Asks the device whether it can make such an image at all, and how large.
+fn check(
+    shared: &Shared,
+    label: Label<'_>,
+    desc: &ImageDesc,
+    info: &vk::ImageCreateInfo<'_>,
+) -> Result<(), GpuError> {
+    // SAFETY: a live physical device of this instance.
+    let most = unsafe {
+        shared.functions.instance.get_physical_device_image_format_properties(
+            shared.facts.physical_device,
+            info.format,
+            info.image_type,
+            info.tiling,
+            info.usage,
+            info.flags,
+        )
+    }
+    .map_err(|_| {
+        GpuError::misuse(label.name, format!("the device has no {:?} for {:?}", desc.format, desc.usage))
+    })?;
+    let [width, height, depth] = desc.extent;
+    let limit = most.max_extent;
+    let largest = width.max(height).max(depth);
+    let problem = if width == 0 || height == 0 || depth == 0 || desc.layers == 0 || desc.mips == 0 {
+        "every side needs at least one texel, and an image at least one layer and mip".to_owned()
+    } else if width > limit.width || height > limit.height || depth > limit.depth {
+        let most = format!("{} x {} x {}", limit.width, limit.height, limit.depth);
+        format!("{width} x {height} x {depth} texels; the device allows {most}: make it smaller or split it")
+    } else if desc.layers > most.max_array_layers {
+        format!("{} layers; the device allows {}", desc.layers, most.max_array_layers)
+    } else if !most.sample_counts.contains(desc.samples) || desc.samples.as_raw().count_ones() != 1 {
+        format!("{:?} samples; the device allows {:?}", desc.samples, most.sample_counts)
+    } else if desc.mips > 32 - largest.leading_zeros() {
+        format!("{} mips; the largest side has {}", desc.mips, 32 - largest.leading_zeros())
+    } else if desc.cube && (!desc.layers.is_multiple_of(6) || width != height) {
+        "a cube needs square faces and six layers for each".to_owned()
+    } else {
+        return Ok(());
+    };
+    Err(GpuError::misuse(label.name, problem))
+}
+
+impl Context {
+    /// Makes an image with optimal tiling, in layout `UNDEFINED`.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for what the device cannot make (format with usage, size, layers), [`GpuError::Memory`]
+    /// when there is no memory left.
+    pub fn create_image(&self, label: Label<'_>, desc: &ImageDesc) -> Result<Image, GpuError> {
+        Image::new(&self.shared, label, desc)
+    }
+
+    /// Wraps an image of the host's. `desc` must describe it truly.
+    ///
+    /// # Safety
+    /// `raw` is a live image of this device with that format, extent, mips, layers and usage, bound to memory, and
+    /// stays so until every clone is dropped and the frames that used it are done. Dropping the clones destroys only
+    /// the views made here.
+    pub unsafe fn import_image(&self, raw: vk::Image, label: Label<'_>, desc: &ImageDesc) -> Image {
+        let ledger = self.shared.ledger().add(label.owner, 0);
+        Image::from_parts(&self.shared, raw, label, desc, None, ledger)
+    }
+}

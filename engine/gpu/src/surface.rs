@@ -1,0 +1,1 @@
+//! A swapchain on a window.
