@@ -78,7 +78,19 @@ impl Camera {
 
     /// A camera at `from` that looks at `to`. `None` if the two coincide or `up` is parallel to the view.
     pub fn look_at(name: &str, from: Vec3, to: Vec3, up: Vec3, projection: Projection) -> Option<Self> {
-        let back = (from - to).try_normalize()?;
+        Self::oriented(name, from, from - to, up, projection)
+    }
+
+    /// A camera at `from` with its +Z along `back` and its +Y as near to `up` as that allows. `None` if `back` is
+    /// zero or `up` parallel to it.
+    pub(crate) fn oriented(
+        name: &str,
+        from: Vec3,
+        back: Vec3,
+        up: Vec3,
+        projection: Projection,
+    ) -> Option<Self> {
+        let back = back.try_normalize()?;
         let right = up.cross(back).try_normalize()?;
         Some(Self { name: name.into(), transform: rigid(right, back, from), projection })
     }
