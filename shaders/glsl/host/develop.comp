@@ -11,12 +11,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2D radiance;
 
 // Scene-linear RGB, three floats a pixel.
-layout(std430, set = 0, binding = 1) writeonly buffer Linear {
+layout(std430, set = 0, binding = 1) buffer Linear {
     float values[];
 } linear_picture;
 
 // sRGB-encoded, one byte a channel, red lowest.
-layout(std430, set = 0, binding = 2) writeonly buffer Display {
+layout(std430, set = 0, binding = 2) buffer Display {
     uint values[];
 } display_picture;
 
