@@ -8,11 +8,11 @@
 
 use std::f64::consts::TAU;
 
-use airglow_math::sh::rotation::Rotation;
-use glam::{DMat3, DQuat, DVec3, Mat4};
+use glam::{DVec3, Mat3A, Mat4};
 
 use crate::analytic::unit;
-use crate::directions::{Directions, LANES, MAX_COEFFICIENTS, MAX_WIDTH, hemisphere};
+use crate::directions::{Directions, LANES, MAX_WIDTH, hemisphere};
+use crate::frame::{Frame, FrameRotation};
 use crate::mesh::{Mesh, Placement};
 use crate::origin::{Surroundings, surroundings};
 use crate::triangle::Segment;
@@ -28,6 +28,7 @@ pub(crate) struct Vertices<'a> {
     surroundings: Vec<Surroundings>,
     occluders: &'a Occluders<'a>,
     directions: Directions,
+    rotation: FrameRotation,
     settings: Settings,
     /// The constant 1 over the lower hemisphere.
     lower: Vec<f64>,
@@ -53,6 +54,7 @@ impl<'a> Vertices<'a> {
             positions,
             occluders,
             directions: Directions::new(settings)?,
+            rotation: FrameRotation::new(settings.order)?,
             settings: *settings,
             lower: hemisphere(settings.order, DVec3::NEG_Z)?,
         })
@@ -83,9 +85,8 @@ impl<'a> Vertices<'a> {
                 stats.zero_normals += 1;
                 continue;
             };
-            let frame =
-                DQuat::from_rotation_arc(DVec3::Z, normal) * DQuat::from_rotation_z(self.twist(vertex));
-            let (mut sums, free) = self.trace(vertex, normal, frame);
+            let frame = Frame::new(normal, self.twist(vertex));
+            let (mut sums, free) = self.trace(vertex, normal, &frame);
             let rays = self.directions.local.len();
             stats.rays += rays as u64;
             stats.blocked += (rays - free) as u64;
@@ -93,24 +94,23 @@ impl<'a> Vertices<'a> {
             for (sum, residual) in sums.iter_mut().zip(&self.directions.residual) {
                 *sum += share * residual;
             }
-            let rotation = Rotation::from_quaternion(self.settings.order, frame)?;
             let (transfer_sums, visibility_sums) = sums.split_at_mut(count);
-            write(&rotation, transfer_sums, transfer)?;
+            self.write(&frame, transfer_sums, transfer)?;
             if let Some(below) = self.settings.visibility {
                 self.extend_below(below, &mut visibility_sums[..count]);
-                write(&rotation, &visibility_sums[..count], visibility)?;
+                self.write(&frame, &mut visibility_sums[..count], visibility)?;
             }
         }
         Ok(stats)
     }
 
     /// Sums the rows of the vertex's free rays, and counts these.
-    fn trace(&self, vertex: usize, normal: DVec3, frame: DQuat) -> ([f64; MAX_WIDTH], usize) {
+    fn trace(&self, vertex: usize, normal: DVec3, frame: &Frame) -> ([f64; MAX_WIDTH], usize) {
         let scale = self.occluders.scale();
         let origin = self.surroundings[vertex].ray_origin(self.positions[vertex], normal.as_vec3());
         let origin = scale.apply(origin);
         let reach = scale.length(self.settings.reach);
-        let frame = DMat3::from_quat(frame).as_mat3();
+        let frame = Mat3A::from(frame.matrix().as_mat3());
         let width = self.directions.width;
         let (mut totals, mut free, mut last) = ([0.0; MAX_WIDTH], 0, usize::MAX);
         let batches = self.directions.local.chunks(BATCH).zip(self.directions.rows.chunks(BATCH * width));
@@ -139,6 +139,13 @@ impl<'a> Vertices<'a> {
         TAU * (hash >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// Rotates a vector into the space baked in and rounds it to f32.
+    fn write(&self, frame: &Frame, vector: &mut [f64], out: &mut [f32]) -> Result<(), BakeError> {
+        self.rotation.apply(frame, vector)?;
+        out.iter_mut().zip(vector).for_each(|(out, value)| *out = *value as f32);
+        Ok(())
+    }
+
     /// Completes the visibility of the upper hemisphere by what counts below the horizon.
     fn extend_below(&self, below: BelowHorizon, upper: &mut [f64]) {
         match below {
@@ -154,14 +161,6 @@ impl<'a> Vertices<'a> {
             }
         }
     }
-}
-
-/// Rotates a vector into the space baked in and rounds it to f32.
-fn write(rotation: &Rotation, local: &[f64], out: &mut [f32]) -> Result<(), BakeError> {
-    let mut rotated = [0.0; MAX_COEFFICIENTS];
-    rotation.apply(local, &mut rotated[..out.len()])?;
-    out.iter_mut().zip(rotated).for_each(|(out, value)| *out = value as f32);
-    Ok(())
 }
 
 /// Adds a row, in whole vectors.
