@@ -227,7 +227,8 @@ pub(crate) fn reads(access: A) -> bool {
 /// What a resource was last used for when the plan begins, or what the host does with it next.
 ///
 /// Stage `NONE` means that nothing is pending: on entry the contents are already visible to every access
-/// (after a semaphore or fence wait, say), on exit the host synchronises by other means.
+/// (after a semaphore or fence wait, say); on exit the host synchronises by other means, with what follows and
+/// with the next execution of the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct State {
     /// Stages of the last use before, or of the next use after, the plan.

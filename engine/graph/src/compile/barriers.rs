@@ -98,7 +98,7 @@ impl Row<'_> {
         }
         let before = match entry {
             Some(entry) => self.enter(entry, epochs.first()),
-            None => before_transient(epochs.last(), release_to.is_some()),
+            None => before_transient(epochs.last(), exit.is_some_and(|exit| self.waits(exit))),
         };
         let last = epochs.last().copied().unwrap_or(before);
         self.between(before, &mut epochs);
@@ -109,6 +109,11 @@ impl Row<'_> {
 
     fn is_foreign(&self, family: u32) -> bool {
         family != QUEUE_FAMILY_IGNORED && family != self.limits.queue_family
+    }
+
+    /// Whether the host itself waits for what it gets in this state, and then before the plan runs again.
+    fn waits(&self, exit: State) -> bool {
+        self.is_foreign(exit.queue_family) || Epoch::of_host(exit).is_idle()
     }
 
     /// The epoch before the plan; takes ownership first where another family has it.
@@ -150,6 +155,7 @@ impl Row<'_> {
                 let cause = match (previous.writes(), epoch.writes()) {
                     (true, false) => Cause::ReadAfterWrite,
                     (true, true) => Cause::WriteAfterWrite,
+                    _ if previous.is_idle() => Cause::Layout,
                     (false, true) => Cause::WriteAfterRead,
                     (false, false) => Cause::ReadAfterRead,
                 };
@@ -196,7 +202,10 @@ fn add_exit(epochs: &mut Vec<Epoch>, entry: Option<State>, exit: State, released
     }
     if released {
         // The taking family sees to its own accesses; here only the layout is brought about.
-        host = Epoch { stage: last.stage, access: AccessFlags2::NONE, ..host };
+        // Some stage has to stand between the layout change and the release.
+        let idle = last.stage.is_empty();
+        let stage = if idle { PipelineStageFlags2::ALL_COMMANDS } else { last.stage };
+        host = Epoch { stage, access: AccessFlags2::NONE, ..host };
     }
     let nothing_to_do = host.layout == last.layout && (released || host.is_idle());
     if !nothing_to_do {
@@ -206,10 +215,10 @@ fn add_exit(epochs: &mut Vec<Epoch>, entry: Option<State>, exit: State, released
 
 /// What the execution of the same plan before this one left of a transient: contents nobody wants, and uses
 /// that the first write must wait for.
-fn before_transient(last: Option<&Epoch>, released: bool) -> Epoch {
+fn before_transient(last: Option<&Epoch>, host_waits: bool) -> Epoch {
     let undefined = Epoch::of_host(State::UNDEFINED);
     match last {
-        Some(last) if !released => Epoch { stage: last.stage, access: last.written(), ..undefined },
+        Some(last) if !host_waits => Epoch { stage: last.stage, access: last.written(), ..undefined },
         _ => undefined,
     }
 }

@@ -1,7 +1,7 @@
 //! Phase 5: from which step to which step each resource is in use.
 
 use crate::graph::Declaration;
-use crate::plan::{Lifetime, PlanResource};
+use crate::plan::{Lifetime, PlanExport, PlanResource};
 
 pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanResource> {
     let mut lifetimes: Vec<Option<Lifetime>> = vec![None; declaration.resources.len()];
@@ -12,7 +12,10 @@ pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanR
             *lifetime = Some(Lifetime { first, last: step });
         }
     }
-    let exported = |index: usize| declaration.exports.iter().any(|e| e.resource.index() == index);
+    let exports = |index: usize| {
+        let of_this = declaration.exports.iter().filter(|e| e.resource.index() == index);
+        of_this.map(|e| PlanExport { range: e.range, version: e.version, state: e.state }).collect()
+    };
     let resources = declaration.resources.iter().zip(lifetimes).enumerate();
     resources
         .map(|(index, (resource, lifetime))| PlanResource {
@@ -20,7 +23,7 @@ pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanR
             desc: resource.desc,
             origin: resource.origin,
             lifetime,
-            exported: exported(index),
+            exports: exports(index),
             bytes: resource.desc.bytes(),
         })
         .collect()

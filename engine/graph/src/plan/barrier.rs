@@ -14,6 +14,8 @@ pub enum Cause {
     WriteAfterRead,
     /// Read, then read in another layout or where the first read's barrier did not reach.
     ReadAfterRead,
+    /// Nothing pending: the layout only.
+    Layout,
     /// Taken from another queue family.
     Acquire,
     /// Given to another queue family.

@@ -38,6 +38,6 @@ impl<R> Plan<R> {
 }
 
 fn alive_at(resource: &PlanResource, step: usize) -> bool {
-    let end = |last| if resource.exported { usize::MAX } else { last };
+    let end = |last| if !resource.exports.is_empty() { usize::MAX } else { last };
     resource.lifetime.is_some_and(|l| (l.first..=end(l.last)).contains(&step))
 }

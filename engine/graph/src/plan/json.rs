@@ -94,7 +94,7 @@ fn resource_json(resource: &PlanResource) -> ResourceJson<'_> {
         Origin::Imported { entry, exit } => Some([state_json(entry), state_json(exit)]),
         Origin::Transient => None,
     };
-    let PlanResource { name, lifetime, exported, bytes, .. } = resource;
+    let PlanResource { name, lifetime, exports, bytes, .. } = resource;
     ResourceJson {
         name,
         kind,
@@ -105,7 +105,7 @@ fn resource_json(resource: &PlanResource) -> ResourceJson<'_> {
         usage,
         bytes: *bytes,
         imported,
-        exported: *exported,
+        exported: !exports.is_empty(),
         lifetime: *lifetime,
     }
 }

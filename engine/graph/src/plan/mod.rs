@@ -9,7 +9,7 @@ mod text;
 pub use barrier::{Barriers, BufferBarrier, Cause, ImageBarrier};
 pub use bytes::PlanBytes;
 
-use crate::access::Access;
+use crate::access::{Access, State};
 use crate::graph::LeftOut;
 use crate::handle::{Handle, ImageRange, Kind, ResourceId};
 use crate::pass::PassKind;
@@ -84,10 +84,21 @@ pub struct PlanResource {
     pub origin: Origin,
     /// First and last step that use it; `None` if no step does, and then a transient need not exist.
     pub lifetime: Option<Lifetime>,
-    /// Whether it must outlive the plan.
-    pub exported: bool,
+    /// The parts that were exported by name, and the state each is left in.
+    pub exports: Vec<PlanExport>,
     /// Bytes, where known before allocation.
     pub bytes: Option<u64>,
+}
+
+/// A part of a resource that outlives the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlanExport {
+    /// The part of it; one mip and one layer for a buffer.
+    pub range: ImageRange,
+    /// Its version.
+    pub version: u32,
+    /// The state it is left in.
+    pub state: State,
 }
 
 /// A span of steps, both ends included.

@@ -50,7 +50,7 @@ impl<R> Plan<R> {
             Origin::Imported { .. } => write!(out, ", imported")?,
             Origin::Transient => write!(out, ", transient")?,
         }
-        if resource.exported {
+        if !resource.exports.is_empty() {
             write!(out, ", exported")?;
         }
         match resource.lifetime {
