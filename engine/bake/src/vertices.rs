@@ -68,6 +68,21 @@ impl<'a> Vertices<'a> {
         self.settings.coefficient_count()
     }
 
+    /// Unit normal of a vertex, if it has one.
+    pub(crate) fn normal(&self, vertex: usize) -> Option<DVec3> {
+        unit(*self.normals.get(vertex)?)
+    }
+
+    /// Whether the ray of a vertex along `direction` is free.
+    pub(crate) fn sees(&self, vertex: usize, normal: DVec3, direction: DVec3) -> bool {
+        let scale = self.occluders.scale();
+        let origin = self.surroundings[vertex].ray_origin(self.positions[vertex], normal.as_vec3());
+        let reach = scale.length(self.settings.reach);
+        let segment = Segment { origin: scale.apply(origin), direction: direction.as_vec3a(), reach };
+        let mut no_blocker_yet = usize::MAX;
+        !self.occluders.blocks(&segment, &mut no_blocker_yet)
+    }
+
     /// Bakes consecutive vertices from `first`, as many as `transfer` holds vectors of; `visibility` is empty or
     /// as long.
     pub(crate) fn bake(
