@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# From a clone to a lit picture, its error/time plot, its timings and its plan. Safe to repeat.
+#   tools/demo.sh [--device NAME|INDEX|KIND]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tools/prepare.sh
+
+device=()
+while [ $# -gt 0 ]; do
+    case $1 in
+        --device)
+            [ $# -ge 2 ] || fail "--device needs a name, an index or a kind"
+            device=(--device "$2")
+            shift 2
+            ;;
+        --device=*)
+            device=(--device "${1#--device=}")
+            shift
+            ;;
+        *) fail "usage: tools/demo.sh [--device NAME|INDEX|KIND]" ;;
+    esac
+done
+
+say "demo of airglow: build, bake, draw, measure"
+echo "Expect 5 to 8 minutes on two cores the first time, most of it building; about 2 minutes after that."
+
+require_toolchain
+packages=(libvulkan1)
+# A driver of the machine's own is used; without any, Mesa's brings the software renderer.
+if ! find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2> /dev/null | grep -q .; then
+    packages+=(mesa-vulkan-drivers)
+fi
+install_packages "${packages[@]}"
+
+say "building"
+cargo build --locked --release -p airglow-cli
+
+scene=assets/scenes/demo.toml
+airglow=target/release/airglow
+mkdir -p out
+say "the device"
+"$airglow" devices
+say "baking and drawing $scene"
+"$airglow" render "$scene" "${device[@]}" -o out/demo.png --stat out/demo.json
+say "the plan"
+"$airglow" plan "$scene" "${device[@]}" | tee out/plan.txt
+say "measuring error against time"
+"$airglow" report relight --scene "$scene" "${device[@]}" -o out/report --quick
+
+say "done in $SECONDS s"
+echo "picture          $PWD/out/demo.png"
+echo "timings          $PWD/out/demo.json"
+echo "plan             $PWD/out/plan.txt"
+find "$PWD/out/report" -name '*.html' -printf 'error/time plot  %p\n'

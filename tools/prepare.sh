@@ -1,0 +1,40 @@
+# Functions that the scripts beside this file share; sourced, not run.
+
+say() { printf '\n== %s\n' "$*"; }
+
+fail() {
+    printf 'error: %s\n' "$*" >&2
+    exit 1
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then
+        "$@"
+    elif command -v sudo > /dev/null; then
+        sudo "$@"
+    else
+        fail "'$*' needs root; run this script as root or install sudo"
+    fi
+}
+
+# Installs the Debian packages named that are not there; does nothing, and asks for no root, when all are.
+install_packages() {
+    local missing=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${db:Status-Status}' "$package" 2> /dev/null | grep -qx installed || missing+=("$package")
+    done
+    if [ ${#missing[@]} = 0 ]; then
+        return
+    fi
+    command -v apt-get > /dev/null || fail "this machine has no apt-get; install what matches: ${missing[*]}"
+    say "installing ${missing[*]}"
+    as_root apt-get update -qq
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+}
+
+# Stops with the mend when the Rust toolchain or the linker it calls is not there.
+require_toolchain() {
+    command -v cargo > /dev/null || PATH="$HOME/.cargo/bin:$PATH" # where rustup puts it
+    command -v cargo > /dev/null || fail "cargo is not on the PATH; install a Rust toolchain with rustup"
+    command -v cc > /dev/null || install_packages gcc libc6-dev
+}
