@@ -13,6 +13,7 @@
 
 use std::path::{Path, PathBuf};
 
+use airglow_gpu::BindingDesc;
 use ash::vk;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, ArraySize, Handle, ImageClass, ShaderStage, Type, TypeInner};
@@ -184,6 +185,20 @@ impl Module {
     /// Set, binding and descriptor type of every resource, sorted.
     pub fn signature(&self) -> Vec<(u32, u32, vk::DescriptorType)> {
         self.bindings.iter().map(|binding| (binding.set, binding.binding, binding.kind)).collect()
+    }
+
+    /// Panics unless the bindings that a pipeline states in Rust are those of this module: all of them for a compute
+    /// shader, at least those this stage has for the others, which share the statement.
+    #[track_caller]
+    pub fn assert_bindings(&self, stated: &[BindingDesc]) {
+        let mut stated: Vec<_> =
+            stated.iter().map(|desc| (0, desc.binding, desc.kind.descriptor_type())).collect();
+        stated.sort_unstable();
+        let found = self.signature();
+        if self.stage != vk::ShaderStageFlags::COMPUTE {
+            stated.retain(|binding| found.contains(binding));
+        }
+        assert_eq!(stated, found, "bindings stated in Rust against those of the shader (set, binding, type)");
     }
 
     /// The block of the buffer at a binding.
