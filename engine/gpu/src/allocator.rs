@@ -49,6 +49,8 @@ pub struct Allocation {
 
 // SAFETY: the pointer is an address in mapped device memory, valid on every thread; who uses it takes a lock.
 unsafe impl Send for Allocation {}
+// SAFETY: as above; a shared reference only copies the address.
+unsafe impl Sync for Allocation {}
 
 /// A source of device memory. Calls come one at a time, from any thread.
 ///

@@ -19,6 +19,7 @@ mod pipeline;
 mod readback;
 mod recorder;
 pub mod requirements;
+mod resources;
 mod retire;
 mod shared;
 #[cfg(feature = "surface")]
@@ -29,7 +30,7 @@ pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
 pub use ash;
 pub use context::{AdoptInfo, Context};
 pub use error::GpuError;
-pub use execute::{Execution, Imports, Record, Recorded, Resources};
+pub use execute::{Execution, Record, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
 pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
 pub use pipeline::{
@@ -39,4 +40,5 @@ pub use pipeline::{
 pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
 pub use requirements::Requirements;
+pub use resources::{Imports, Resources};
 pub use timing::{FrameTimes, PassTime, Timing, TimingSummary};

@@ -1,6 +1,6 @@
-//! Images and views of their mips and layers.
+//! Images.
 
-use super::Label;
+use super::{Label, ViewDesc};
 use crate::allocator::{Allocation, Location};
 use crate::context::Context;
 use crate::error::GpuError;
@@ -10,48 +10,19 @@ use airglow_graph::ImageDesc;
 use ash::vk;
 use std::sync::{Arc, Mutex};
 
-/// Which part of an image is seen, and as what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ViewDesc {
-    /// Shape of the view.
-    pub dimension: vk::ImageViewType,
-    /// First mip level.
-    pub base_mip: u32,
-    /// Number of mip levels.
-    pub mips: u32,
-    /// First array layer.
-    pub base_layer: u32,
-    /// Number of array layers.
-    pub layers: u32,
-}
-
-impl ViewDesc {
-    /// One mip of one layer, as rendering and storage writes want it.
-    pub fn single(mip: u32, layer: u32) -> Self {
-        Self { dimension: vk::ImageViewType::TYPE_2D, base_mip: mip, mips: 1, base_layer: layer, layers: 1 }
-    }
-}
-
 /// An image. Clones refer to the same image; the last one dropped retires it and its views.
 #[derive(Clone)]
-pub struct Image(Arc<Inner>);
+pub struct Image(pub(super) Arc<Inner>);
 
-struct Inner {
-    shared: Arc<Shared>,
+pub(super) struct Inner {
+    pub(super) shared: Arc<Shared>,
     raw: vk::Image,
     name: String,
     desc: ImageDesc,
-    views: Mutex<Vec<(ViewDesc, vk::ImageView)>>,
+    /// Views made so far.
+    pub(super) views: Mutex<Vec<(ViewDesc, vk::ImageView)>>,
     memory: Option<Allocation>,
     ledger: usize,
-}
-
-/// A view of an image; keeps the image.
-#[derive(Clone)]
-pub struct ImageView {
-    image: Image,
-    raw: vk::ImageView,
-    desc: ViewDesc,
 }
 
 impl Image {
@@ -116,108 +87,8 @@ impl Image {
         self.0.desc.extent.map(|size| size.checked_shr(mip).unwrap_or(0).max(1))
     }
 
-    /// The view of the whole image: 2D, 2D array (more than one layer) or 3D. Cube views are asked for by [`Image::view`].
-    ///
-    /// # Errors
-    /// As [`Image::view`].
-    pub fn full_view(&self) -> Result<ImageView, GpuError> {
-        let dimension = match (self.0.desc.extent[2] > 1, self.0.desc.layers > 1) {
-            (true, _) => vk::ImageViewType::TYPE_3D,
-            (false, true) => vk::ImageViewType::TYPE_2D_ARRAY,
-            (false, false) => vk::ImageViewType::TYPE_2D,
-        };
-        self.view(ViewDesc {
-            dimension,
-            base_mip: 0,
-            mips: self.0.desc.mips,
-            base_layer: 0,
-            layers: self.0.desc.layers,
-        })
-    }
-
-    /// A view, made on first asking and kept with the image.
-    ///
-    /// # Errors
-    /// [`GpuError::Misuse`] if the mips or layers leave the image or do not fit the shape.
-    pub fn view(&self, desc: ViewDesc) -> Result<ImageView, GpuError> {
-        let mut views = lock(&self.0.views);
-        if let Some(&(_, raw)) = views.iter().find(|(known, _)| *known == desc) {
-            return Ok(ImageView { image: self.clone(), raw, desc });
-        }
-        self.check_view(&desc)?;
-        let info = vk::ImageViewCreateInfo::default()
-            .image(self.0.raw)
-            .view_type(desc.dimension)
-            .format(self.0.desc.format)
-            .subresource_range(vk::ImageSubresourceRange {
-                aspect_mask: seen_aspect(&self.0.desc),
-                base_mip_level: desc.base_mip,
-                level_count: desc.mips,
-                base_array_layer: desc.base_layer,
-                layer_count: desc.layers,
-            });
-        let device = self.0.shared.device();
-        // SAFETY: a live image of this device and a range checked against it.
-        let raw = unsafe { device.create_image_view(&info, None) }
-            .map_err(GpuError::vulkan("vkCreateImageView"))?;
-        self.0.shared.name(raw, vk::ObjectType::IMAGE_VIEW, self.name());
-        views.push((desc, raw));
-        Ok(ImageView { image: self.clone(), raw, desc })
-    }
-
-    fn check_view(&self, desc: &ViewDesc) -> Result<(), GpuError> {
-        let within = |base: u32, count: u32, all: u32| {
-            count > 0 && base.checked_add(count).is_some_and(|end| end <= all)
-        };
-        let shape = match desc.dimension {
-            vk::ImageViewType::TYPE_2D => desc.layers == 1 && self.0.desc.extent[2] == 1,
-            vk::ImageViewType::TYPE_2D_ARRAY => self.0.desc.extent[2] == 1,
-            vk::ImageViewType::TYPE_3D => desc.layers == 1 && self.0.desc.extent[2] > 1,
-            vk::ImageViewType::CUBE => desc.layers == 6 && self.0.desc.cube,
-            _ => false,
-        };
-        let fits = within(desc.base_mip, desc.mips, self.0.desc.mips)
-            && within(desc.base_layer, desc.layers, self.0.desc.layers);
-        if shape && fits {
-            return Ok(());
-        }
-        let (mips, layers) = (self.0.desc.mips, self.0.desc.layers);
-        Err(GpuError::misuse(
-            self.name(),
-            format!("no {desc:?} of an image with {mips} mips and {layers} layers"),
-        ))
-    }
-
     pub(crate) fn belongs_to(&self, shared: &Arc<Shared>) -> bool {
         Arc::ptr_eq(&self.0.shared, shared)
-    }
-}
-
-impl ImageView {
-    /// The Vulkan handle.
-    pub fn raw(&self) -> vk::ImageView {
-        self.raw
-    }
-
-    /// The image.
-    pub fn image(&self) -> &Image {
-        &self.image
-    }
-
-    /// What is seen.
-    pub fn desc(&self) -> ViewDesc {
-        self.desc
-    }
-
-    /// The one aspect seen: depth, where there is stencil too.
-    pub(crate) fn aspect(&self) -> vk::ImageAspectFlags {
-        seen_aspect(self.image.desc())
-    }
-
-    /// Width and height in texels of the view's first mip.
-    pub fn extent(&self) -> [u32; 2] {
-        let [width, height, _] = self.image.extent(self.desc.base_mip);
-        [width, height]
     }
 }
 
@@ -237,12 +108,6 @@ impl Drop for Inner {
             bytes,
         });
     }
-}
-
-/// The one aspect a view shows: depth, where there is stencil too.
-fn seen_aspect(desc: &ImageDesc) -> vk::ImageAspectFlags {
-    let all = desc.aspects();
-    if all.contains(vk::ImageAspectFlags::DEPTH) { vk::ImageAspectFlags::DEPTH } else { all }
 }
 
 /// The description as Vulkan takes it.

@@ -4,11 +4,13 @@ pub(crate) mod buffer;
 pub(crate) mod image;
 pub(crate) mod ledger;
 pub(crate) mod sampler;
+pub(crate) mod view;
 
 pub use buffer::{Buffer, BufferSlice};
-pub use image::{Image, ImageView, ViewDesc};
+pub use image::Image;
 pub use ledger::OwnerBytes;
 pub use sampler::{Sampler, SamplerDesc};
+pub use view::{ImageView, ViewDesc};
 
 /// Whose a resource is and what it is called.
 #[derive(Clone, Copy, Debug)]
