@@ -1,1 +1,13 @@
 //! Real-time lighting passes for Vulkan that an engine embeds in its own device.
+//!
+//! One room, one feature: [`relight`] is relighting by precomputed radiance transfer. What the rooms share is
+//! re-exported beside them: the graph a frame is declared in, the layer over the host's device, the bake and the
+//! mathematics.
+#![forbid(unsafe_code)]
+
+pub use airglow_bake as bake;
+pub use airglow_gpu as gpu;
+pub use airglow_graph as graph;
+pub use airglow_math as math;
+#[cfg(feature = "relight")]
+pub use airglow_relight as relight;

@@ -1,0 +1,324 @@
+//! The kernels of this room: their SPIR-V, and every binding stated once.
+//!
+//! A test reflects each module and compares it with what stands here.
+
+use airglow_gpu::{BindingDesc, BindingKind};
+use airglow_graph::Access;
+
+use crate::settings::{LightKind, Output, Settings, Storage};
+
+/// Invocations of a workgroup of the kernels that run over vertices; README.md has the measurement.
+pub const WORKGROUP: u32 = 64;
+
+/// One binding of descriptor set 0 and how the kernel uses it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Binding {
+    /// `layout(binding = …)`.
+    pub binding: u32,
+    /// What it holds.
+    pub kind: BindingKind,
+    /// How the kernel uses it.
+    pub access: Access,
+}
+
+/// A kernel: a module and its interface.
+#[derive(Clone, Copy, Debug)]
+pub struct Kernel {
+    /// Name of the pipeline, shown by captures.
+    pub name: &'static str,
+    /// SPIR-V 1.3, little-endian words as bytes.
+    pub spirv: &'static [u8],
+    /// Its bindings.
+    pub bindings: &'static [Binding],
+    /// Bytes of its push constants.
+    pub push_constant_size: u32,
+}
+
+impl Kernel {
+    /// The module as words.
+    #[must_use]
+    pub fn words(&self) -> Vec<u32> {
+        words(self.spirv)
+    }
+
+    /// The bindings as a pipeline takes them.
+    #[must_use]
+    pub fn binding_descs(&self) -> Vec<BindingDesc> {
+        self.bindings.iter().map(|binding| BindingDesc::new(binding.binding, binding.kind)).collect()
+    }
+}
+
+/// Little-endian words of a module's bytes.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+}
+
+/// Which vectors of a vertex a kernel reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Source {
+    /// Only the baked ones.
+    Baked,
+    /// Only the dynamic visibility.
+    Dynamic,
+    /// Both.
+    Both,
+}
+
+macro_rules! module {
+    ($($part:expr),*) => {
+        include_bytes!(concat!("../../../shaders/spirv/relight/", $($part,)* ".spv")).as_slice()
+    };
+}
+macro_rules! by_order {
+    ($before:literal, $after:literal) => {
+        [
+            module!($before, ".ORDER1", $after),
+            module!($before, ".ORDER2", $after),
+            module!($before, ".ORDER3", $after),
+            module!($before, ".ORDER4", $after),
+            module!($before, ".ORDER5", $after),
+            module!($before, ".ORDER6", $after),
+        ]
+    };
+}
+/// Modules by order - 1.
+type ByOrder = [&'static [u8]; 6];
+
+static ENVIRONMENT_ROWS: ByOrder = by_order!("environment_rows", "");
+static ENVIRONMENT_BANDS: ByOrder = by_order!("environment_bands", "");
+static ROTATE: ByOrder = by_order!("rotate", "");
+static PRODUCT: ByOrder = by_order!("product", "");
+static PRODUCT_MATRIX: ByOrder = by_order!("product_matrix", "");
+/// By visibility, light, storage.
+static COLOUR: [[[ByOrder; 2]; 2]; 2] = [
+    [
+        [by_order!("colour.uniform", ".f32"), by_order!("colour.uniform", ".f16")],
+        [by_order!("colour.vertex", ".f32"), by_order!("colour.vertex", ".f16")],
+    ],
+    [
+        [by_order!("colour.uniform", ".f32.VISIBILITY"), by_order!("colour.uniform", ".f16.VISIBILITY")],
+        [by_order!("colour.vertex", ".f32.VISIBILITY"), by_order!("colour.vertex", ".f16.VISIBILITY")],
+    ],
+];
+/// By visibility, light, storage.
+static RECTANGLE: [[[ByOrder; 2]; 2]; 2] = [
+    [
+        [by_order!("colour_rectangle.uniform", ".f32"), by_order!("colour_rectangle.uniform", ".f16")],
+        [by_order!("colour_rectangle.vertex", ".f32"), by_order!("colour_rectangle.vertex", ".f16")],
+    ],
+    [
+        [
+            by_order!("colour_rectangle.uniform", ".f32.VISIBILITY"),
+            by_order!("colour_rectangle.uniform", ".f16.VISIBILITY"),
+        ],
+        [
+            by_order!("colour_rectangle.vertex", ".f32.VISIBILITY"),
+            by_order!("colour_rectangle.vertex", ".f16.VISIBILITY"),
+        ],
+    ],
+];
+/// By light, storage.
+static INCIDENT_BAKED: [[ByOrder; 2]; 2] = [
+    [by_order!("incident.uniform", ".static.f32"), by_order!("incident.uniform", ".static.f16")],
+    [by_order!("incident.vertex", ".static.f32"), by_order!("incident.vertex", ".static.f16")],
+];
+/// By light, storage.
+static INCIDENT_BOTH: [[ByOrder; 2]; 2] = [
+    [by_order!("incident.uniform", ".both.f32"), by_order!("incident.uniform", ".both.f16")],
+    [by_order!("incident.vertex", ".both.f32"), by_order!("incident.vertex", ".both.f16")],
+];
+/// By light.
+static INCIDENT_DYNAMIC: [ByOrder; 2] =
+    [by_order!("incident.uniform", ".dynamic"), by_order!("incident.vertex", ".dynamic")];
+static RECTANGLE_VERTEX: &[u8] = module!("rectangle");
+
+const fn storage(binding: u32, access: Access) -> Binding {
+    Binding { binding, kind: BindingKind::StorageBuffer, access }
+}
+const fn read(binding: u32) -> Binding {
+    storage(binding, Access::ComputeStorageRead)
+}
+const fn write(binding: u32) -> Binding {
+    storage(binding, Access::ComputeStorageWrite)
+}
+const fn uniform(binding: u32) -> Binding {
+    Binding { binding, kind: BindingKind::UniformBuffer, access: Access::ComputeUniform }
+}
+const fn fragment_read(binding: u32) -> Binding {
+    storage(binding, Access::FragmentStorageRead)
+}
+const fn fragment_uniform(binding: u32) -> Binding {
+    Binding { binding, kind: BindingKind::UniformBuffer, access: Access::FragmentUniform }
+}
+const fn sampled(binding: u32) -> Binding {
+    Binding { binding, kind: BindingKind::SampledImage, access: Access::ComputeSampled }
+}
+
+/// Bytes of the push constants `vertex_count`, `stride`, `first_row` of the kernels over vertices.
+const CHUNK: u32 = 12;
+
+/// Sums over the columns of each row: environment, column table, row sums.
+#[must_use]
+pub fn environment_rows(order: usize) -> Kernel {
+    Kernel {
+        name: "relight environment rows",
+        spirv: ENVIRONMENT_ROWS[order - 1],
+        bindings: const { &[sampled(0), read(1), write(2)] },
+        push_constant_size: 8,
+    }
+}
+
+/// Sums over the rows: row table, row sums, map-frame coefficients.
+#[must_use]
+pub fn environment_bands(order: usize) -> Kernel {
+    Kernel {
+        name: "relight environment bands",
+        spirv: ENVIRONMENT_BANDS[order - 1],
+        bindings: const { &[read(0), read(1), write(2)] },
+        push_constant_size: 8,
+    }
+}
+
+/// Rotations: source vectors, quaternions, rotated vectors.
+#[must_use]
+pub fn rotate(order: usize) -> Kernel {
+    Kernel {
+        name: "relight rotate",
+        spirv: ROTATE[order - 1],
+        bindings: const { &[read(0), read(1), write(2)] },
+        push_constant_size: 8,
+    }
+}
+
+/// Products of pairs: tensor, left, right, product.
+#[must_use]
+pub fn product(order: usize) -> Kernel {
+    Kernel {
+        name: "relight product",
+        spirv: PRODUCT[order - 1],
+        bindings: const { &[read(0), read(1), read(2), write(3)] },
+        push_constant_size: 0,
+    }
+}
+
+/// Product matrices of lights: tensor, lights, matrices.
+#[must_use]
+pub fn product_matrix(order: usize) -> Kernel {
+    Kernel {
+        name: "relight product matrix",
+        spirv: PRODUCT_MATRIX[order - 1],
+        bindings: const { &[read(0), read(1), write(2)] },
+        push_constant_size: 8,
+    }
+}
+
+/// The kernel that writes colours or incident radiance for a chunk of vertices.
+#[must_use]
+pub(crate) fn vertices(settings: &Settings, source: Source) -> Kernel {
+    let (name, modules) = match settings.output {
+        Output::Colour => ("relight colour", colour_modules(&COLOUR, settings, source)),
+        Output::Incident => ("relight incident", incident_modules(settings, source)),
+    };
+    Kernel {
+        name,
+        spirv: modules[settings.order - 1],
+        bindings: vertex_bindings(settings, source),
+        push_constant_size: CHUNK,
+    }
+}
+
+/// The fragment kernel of the packed rectangle; its vertex stage is [`rectangle_vertex`].
+#[must_use]
+pub(crate) fn rectangle(settings: &Settings, source: Source) -> Kernel {
+    Kernel {
+        name: "relight rectangle",
+        spirv: colour_modules(&RECTANGLE, settings, source)[settings.order - 1],
+        bindings: match (source, settings.light) {
+            (Source::Baked, LightKind::Uniform) => const { &[fragment_read(0), fragment_uniform(1)] },
+            (Source::Baked, LightKind::Vertex) => const { &[fragment_read(0), fragment_read(1)] },
+            (_, LightKind::Uniform) => const { &[fragment_read(0), fragment_read(3), fragment_uniform(4)] },
+            (_, LightKind::Vertex) => {
+                const { &[fragment_read(0), fragment_read(1), fragment_read(3), fragment_read(4)] }
+            }
+        },
+        push_constant_size: CHUNK,
+    }
+}
+
+/// One triangle over the viewport.
+#[must_use]
+pub(crate) fn rectangle_vertex() -> Vec<u32> {
+    words(RECTANGLE_VERTEX)
+}
+
+fn storage_index(settings: &Settings) -> usize {
+    usize::from(settings.storage == Storage::F16)
+}
+
+fn light_index(settings: &Settings) -> usize {
+    usize::from(settings.light == LightKind::Vertex)
+}
+
+fn colour_modules(
+    family: &'static [[[ByOrder; 2]; 2]; 2],
+    settings: &Settings,
+    source: Source,
+) -> &'static ByOrder {
+    &family[usize::from(source != Source::Baked)][light_index(settings)][storage_index(settings)]
+}
+
+fn incident_modules(settings: &Settings, source: Source) -> &'static ByOrder {
+    let light = light_index(settings);
+    match source {
+        Source::Baked => &INCIDENT_BAKED[light][storage_index(settings)],
+        Source::Dynamic => &INCIDENT_DYNAMIC[light],
+        Source::Both => &INCIDENT_BOTH[light][storage_index(settings)],
+    }
+}
+
+/// Transfer 0, light 1, result 2, visibility 3, product matrix 4, tensor 4 (colour) or 5 (incident).
+fn vertex_bindings(settings: &Settings, source: Source) -> &'static [Binding] {
+    match (settings.output, source, settings.light) {
+        (Output::Colour, Source::Baked, LightKind::Uniform) => const { &[read(0), uniform(1), write(2)] },
+        (Output::Colour, Source::Baked, LightKind::Vertex) => const { &[read(0), read(1), write(2)] },
+        (Output::Colour, _, LightKind::Uniform) => const { &[read(0), write(2), read(3), uniform(4)] },
+        (Output::Colour, _, LightKind::Vertex) => const { &[read(0), read(1), write(2), read(3), read(4)] },
+        (Output::Incident, Source::Baked, LightKind::Uniform) => const { &[read(0), write(2), uniform(4)] },
+        (Output::Incident, Source::Baked, LightKind::Vertex) => {
+            const { &[read(0), read(1), write(2), read(5)] }
+        }
+        (Output::Incident, Source::Dynamic, LightKind::Uniform) => const { &[write(2), read(3), uniform(4)] },
+        (Output::Incident, Source::Dynamic, LightKind::Vertex) => {
+            const { &[read(1), write(2), read(3), read(5)] }
+        }
+        (Output::Incident, Source::Both, LightKind::Uniform) => {
+            const { &[read(0), write(2), read(3), uniform(4), read(5)] }
+        }
+        (Output::Incident, Source::Both, LightKind::Vertex) => {
+            const { &[read(0), read(1), write(2), read(3), read(5)] }
+        }
+    }
+}
+
+/// Every kernel once, for tests that reflect them: compute and fragment.
+#[must_use]
+pub fn all() -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for order in 1..=crate::settings::MAX_ORDER {
+        kernels
+            .extend([environment_rows, environment_bands, rotate, product, product_matrix].map(|k| k(order)));
+        for storage in [Storage::F32, Storage::F16] {
+            for light in [LightKind::Uniform, LightKind::Vertex] {
+                let settings = Settings { order, storage, light, ..Settings::default() };
+                let incident = Settings { output: Output::Incident, ..settings };
+                for source in [Source::Baked, Source::Both] {
+                    kernels.push(vertices(&settings, source));
+                    kernels.push(rectangle(&settings, source));
+                    kernels.push(vertices(&incident, source));
+                }
+                kernels.push(vertices(&incident, Source::Dynamic));
+            }
+        }
+    }
+    kernels
+}

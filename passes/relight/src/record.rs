@@ -1,0 +1,215 @@
+//! Binds and dispatches: what each stage records, and the road without a graph.
+
+use std::collections::BTreeMap;
+
+use airglow_gpu::{Binding, BufferSlice, ColorAttachment, GpuError, ImageView, Load, Recorder, Rendering};
+use airglow_graph::Access;
+
+use crate::kernels::WORKGROUP;
+use crate::pack::RECTANGLE_WIDTH;
+use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Work};
+
+/// The resources of a frame: the host's, and the scratch a host without a graph makes.
+#[derive(Clone, Default)]
+pub struct Bindings {
+    /// Buffers, from their first byte on.
+    pub buffers: BTreeMap<Resource, BufferSlice>,
+    /// Images, as views of their first mip.
+    pub images: BTreeMap<Resource, ImageView>,
+}
+
+impl Bindings {
+    fn buffer(&self, resource: Resource) -> Result<&BufferSlice, GpuError> {
+        self.buffers.get(&resource).ok_or_else(|| missing(resource))
+    }
+
+    fn image(&self, resource: Resource) -> Result<&ImageView, GpuError> {
+        self.images.get(&resource).ok_or_else(|| missing(resource))
+    }
+
+    /// `size` bytes from `offset` of a resource.
+    fn slice(&self, resource: Resource, offset: u64, size: u64) -> Result<BufferSlice, GpuError> {
+        let whole = self.buffer(resource)?;
+        if offset.checked_add(size).is_none_or(|end| end > whole.size()) {
+            let problem = format!("{size} bytes from byte {offset} are needed, it has {}", whole.size());
+            return Err(GpuError::misuse(resource.to_string(), problem));
+        }
+        whole.buffer().slice(whole.offset() + offset, size)
+    }
+}
+
+fn missing(resource: Resource) -> GpuError {
+    GpuError::misuse(resource.to_string(), "not bound: add it to the bindings")
+}
+
+impl Prepared {
+    /// What the frame uses, for the barriers of a host's own frame graph: each resource with the accesses of all
+    /// stages, in order.
+    #[must_use]
+    pub fn accesses(&self) -> Vec<(Resource, Vec<Access>)> {
+        let mut accesses: BTreeMap<Resource, Vec<Access>> = BTreeMap::new();
+        for used in self.stages.iter().flat_map(|stage| &stage.uses) {
+            accesses.entry(used.resource).or_default().push(used.access);
+        }
+        accesses.into_iter().collect()
+    }
+
+    /// Records all stages with barriers between them and none around them: before, the host makes its inputs
+    /// visible to the first access of [`accesses`](Self::accesses) and brings images into its layout; afterwards it
+    /// waits for the last. The packed rectangle is the exception: its layouts are changed here, from undefined.
+    ///
+    /// Command-buffer state changed: as [`Recorder`] says.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for a resource that is not bound or too small.
+    pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        let mut bindings = bindings.clone();
+        for (resource, need) in &self.needs {
+            if let Need::Ours { buffer, .. } = need {
+                bindings.buffers.insert(*resource, buffer.into());
+            }
+        }
+        let mut last: BTreeMap<Resource, Access> = BTreeMap::new();
+        for stage in &self.stages {
+            for used in &stage.uses {
+                synchronise(recorder, &bindings, *used, last.insert(used.resource, used.access))?;
+            }
+            recorder.labelled(stage.name, |recorder| stage.record(recorder, &bindings))?;
+        }
+        Ok(())
+    }
+}
+
+/// The barrier between two uses of a resource within the frame.
+fn synchronise(
+    recorder: &mut Recorder<'_>,
+    bindings: &Bindings,
+    used: crate::stage::Use,
+    before: Option<Access>,
+) -> Result<(), GpuError> {
+    if used.resource == Resource::Rectangle {
+        let image = bindings.image(Resource::Rectangle)?.image();
+        return match before {
+            Some(before) => recorder.transition(image, before, used.access),
+            None => recorder.transition(image, airglow_graph::State::UNDEFINED, used.access),
+        };
+    }
+    match before {
+        Some(before) if before.writes() || used.access.writes() => {
+            recorder.memory_barrier(before, used.access)
+        }
+        _ => Ok(()),
+    }
+}
+
+impl Stage {
+    /// Records this stage alone, without barriers.
+    ///
+    /// # Errors
+    /// As [`Prepared::record`].
+    pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        let Some(once) = &self.once else { return self.record_work(recorder, bindings) };
+        if once.projected.holds(once.revision) {
+            return Ok(());
+        }
+        self.record_work(recorder, bindings)?;
+        if once.last {
+            once.projected.set(once.revision);
+        }
+        Ok(())
+    }
+
+    fn record_work(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        match &self.work {
+            Work::Uploads(uploads) => uploads.iter().try_for_each(|upload| upload.record(recorder)),
+            Work::Rows { pipeline, size } => {
+                let bound = [
+                    Binding::sampled(0, bindings.image(Resource::Environment)?.clone()),
+                    Binding::storage(1, bindings.buffer(Resource::ColumnTable)?),
+                    Binding::storage(2, bindings.buffer(Resource::RowSums)?),
+                ];
+                recorder.bind_compute(pipeline, &bound)?;
+                recorder.push_constants(size)?;
+                recorder.dispatch([size.second, 1, 1])
+            }
+            Work::Bands { pipeline, size, coefficients } => {
+                let bound = [
+                    Binding::storage(0, bindings.buffer(Resource::RowTable)?),
+                    Binding::storage(1, bindings.buffer(Resource::RowSums)?),
+                    Binding::storage(2, bindings.buffer(Resource::MapCoefficients)?),
+                ];
+                recorder.bind_compute(pipeline, &bound)?;
+                recorder.push_constants(size)?;
+                recorder.dispatch([*coefficients, 1, 1])
+            }
+            Work::Rotate { pipeline, source, target, rotations, strides } => {
+                let quaternions = rotations.get().clone();
+                let turns = recorder.upload(&quaternions)?;
+                let bound = [
+                    Binding::storage(0, bindings.buffer(*source)?),
+                    Binding::storage(1, &turns),
+                    Binding::storage(2, bindings.buffer(*target)?),
+                ];
+                recorder.bind_compute(pipeline, &bound)?;
+                recorder.push_constants(strides)?;
+                recorder.dispatch([quaternions.len() as u32, 1, 1])
+            }
+            Work::Matrices { pipeline, elements, instances, strides } => {
+                let bound = [
+                    Binding::storage(0, bindings.buffer(Resource::Tensor)?),
+                    Binding::storage(1, bindings.buffer(Resource::Lights)?),
+                    Binding::storage(2, bindings.buffer(Resource::Matrices)?),
+                ];
+                recorder.bind_compute(pipeline, &bound)?;
+                recorder.push_constants(strides)?;
+                recorder.dispatch([elements.div_ceil(WORKGROUP), *instances, 1])
+            }
+            Work::Vertices(chunks) => chunks.iter().try_for_each(|chunk| {
+                recorder.bind_compute(&chunk.pipeline, &chunk_bindings(&chunk.bound, bindings)?)?;
+                recorder.push_constants(&chunk.constants)?;
+                recorder.dispatch([chunk.constants.vertex_count.div_ceil(WORKGROUP), 1, 1])
+            }),
+            Work::Rectangle(chunks) => draw_rectangle(recorder, chunks, bindings),
+            Work::Copy { size } => {
+                let results = bindings.slice(Resource::Results, 0, *size)?;
+                recorder.copy_image_to_buffer(bindings.image(Resource::Rectangle)?, results)
+            }
+        }
+    }
+}
+
+fn chunk_bindings(bound: &[Bound], bindings: &Bindings) -> Result<Vec<Binding>, GpuError> {
+    let bind = |bound: &Bound| {
+        let slice = bindings.slice(bound.resource, bound.offset, bound.size)?;
+        Ok(match bound.uniform {
+            true => Binding::uniform(bound.binding, slice),
+            false => Binding::storage(bound.binding, slice),
+        })
+    };
+    bound.iter().map(bind).collect()
+}
+
+/// Each chunk fills the rows of the rectangle that are its own.
+fn draw_rectangle(
+    recorder: &mut Recorder<'_>,
+    chunks: &[ChunkWork<airglow_gpu::GraphicsPipeline>],
+    bindings: &Bindings,
+) -> Result<(), GpuError> {
+    let view = bindings.image(Resource::Rectangle)?;
+    let colors = [ColorAttachment { view, load: Load::Discard }];
+    recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
+    for chunk in chunks {
+        recorder.bind_graphics(&chunk.pipeline, &chunk_bindings(&chunk.bound, bindings)?)?;
+        recorder.push_constants(&chunk.constants)?;
+        let rows = chunk.constants.vertex_count.div_ceil(RECTANGLE_WIDTH);
+        recorder.set_scissor([0, chunk.constants.first_row], [RECTANGLE_WIDTH, rows])?;
+        recorder.draw(0..3, 0..1)?;
+    }
+    recorder.end_rendering()
+}
+
+impl Pair {
+    pub(crate) fn new(first: u32, second: u32) -> Self {
+        Self { first, second }
+    }
+}

@@ -1,0 +1,291 @@
+//! The pass: its kernels, tables and meshes, kept from frame to frame.
+
+use airglow_gpu::ash::vk;
+use airglow_gpu::requirements::{FormatNeed, Limit, LimitNeed};
+use airglow_gpu::{
+    Blend, Buffer, ComputePipeline, ComputePipelineDesc, Context, GpuError, GraphicsPipeline,
+    GraphicsPipelineDesc, Label, Location, Requirements,
+};
+use airglow_graph::BufferDesc;
+
+use crate::RelightError;
+use crate::control::Projected;
+use crate::kernels::{self, Kernel, Source};
+use crate::mesh::{Mesh, MeshId, Meshes};
+use crate::pack::{ChunkLimits, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
+use crate::resident::{OWNER, Resident};
+use crate::settings::{LightKind, Method, Output, Settings};
+use crate::tables::{MapTables, tensor};
+
+/// Format of the packed rectangle: what the vertex buffer holds.
+pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// A pipeline over the vertices of a chunk.
+#[derive(Clone)]
+pub(crate) enum VertexPipeline {
+    Compute(ComputePipeline),
+    Rectangle(GraphicsPipeline),
+}
+
+/// The kernels of the light.
+pub(crate) struct LightPipelines {
+    pub rows: ComputePipeline,
+    pub bands: ComputePipeline,
+    pub rotate: ComputePipeline,
+    pub matrix: Option<ComputePipeline>,
+}
+
+/// The kernels over vertices that the settings can need.
+pub(crate) struct VertexPipelines {
+    pub baked: VertexPipeline,
+    pub both: Option<VertexPipeline>,
+    pub dynamic: Option<VertexPipeline>,
+}
+
+/// Tables for environments of one size, and what was projected with them.
+pub(crate) struct Map {
+    pub width: u32,
+    pub height: u32,
+    pub columns: Resident,
+    pub rows: Resident,
+    pub projected: Projected,
+}
+
+/// Relighting by precomputed radiance transfer.
+///
+/// Made once for a device and [`Settings`]; holds pipelines, meshes and tables, and no frame.
+pub struct Relight {
+    pub(crate) settings: Settings,
+    pub(crate) chunk_vertices: u32,
+    pub(crate) meshes: Meshes,
+    pub(crate) vertex_pipelines: VertexPipelines,
+    /// With uniform light only.
+    pub(crate) light_pipelines: Option<LightPipelines>,
+    /// With uniform light only: the environment's coefficients.
+    pub(crate) environment_light: Option<Buffer>,
+    pub(crate) map: Option<Map>,
+    /// Where some kernel reads it.
+    pub(crate) tensor: Option<Resident>,
+}
+
+impl Relight {
+    /// What a device must offer for these settings, to be joined to those of other passes before it is made.
+    #[must_use]
+    pub fn requirements(settings: &Settings) -> Requirements {
+        let mut requirements = Requirements::engine();
+        requirements.limits.push(LimitNeed {
+            limit: Limit::ComputeSharedMemorySize,
+            at_least: 16 * 128 * (2 * settings.order.max(1) as u64 - 1),
+            why: "sums of a row of the environment",
+        });
+        let usage = match settings.method {
+            Method::Compute => vk::FormatFeatureFlags::VERTEX_BUFFER,
+            Method::Fragment => {
+                vk::FormatFeatureFlags::VERTEX_BUFFER | vk::FormatFeatureFlags::COLOR_ATTACHMENT
+            }
+        };
+        requirements.formats.push(FormatNeed { format: RECTANGLE_FORMAT, usage, why: "vertex colours" });
+        requirements
+    }
+
+    /// Makes the kernels and tables that `settings` need on a device.
+    ///
+    /// # Errors
+    /// [`RelightError::Order`] and [`RelightError::Settings`] for what has no kernel, [`RelightError::Gpu`] when the
+    /// device refuses.
+    pub fn new(context: &Context, settings: Settings) -> Result<Self, RelightError> {
+        let limits = context.limits();
+        let limits = ChunkLimits {
+            storage_range: u64::from(limits.max_storage_buffer_range),
+            workgroups: limits.max_compute_work_group_count[0],
+        };
+        Self::with_chunk_limits(context, settings, &limits)
+    }
+
+    /// The same with limits below the device's, for memory budgets and tests of chunking.
+    ///
+    /// # Errors
+    /// As [`Relight::new`]; [`RelightError::Settings`] when no chunk fits the limits.
+    pub fn with_chunk_limits(
+        context: &Context,
+        settings: Settings,
+        limits: &ChunkLimits,
+    ) -> Result<Self, RelightError> {
+        settings.check()?;
+        let Some(chunk_vertices) = chunk_vertices(&settings, limits, alignment(&settings)) else {
+            return Err(RelightError::Settings {
+                what: "not even the smallest chunk of vertices fits the storage-buffer range",
+                mend: "raise the limit, or lower the order",
+            });
+        };
+        let uniform = settings.light == LightKind::Uniform;
+        let light_buffer = || {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+                | vk::BufferUsageFlags::UNIFORM_BUFFER
+                | vk::BufferUsageFlags::TRANSFER_SRC;
+            let desc = BufferDesc { size: 16 * settings.coefficients() as u64, usage };
+            context.create_buffer(Label::new(OWNER, "relight environment light"), &desc, Location::Device)
+        };
+        let tensor = match shadows(&settings) {
+            true => Some(Resident::new(context, "relight tensor", &tensor(settings.order)?)?),
+            false => None,
+        };
+        Ok(Self {
+            settings,
+            chunk_vertices,
+            meshes: Meshes::default(),
+            vertex_pipelines: vertex_pipelines(context, &settings)?,
+            light_pipelines: uniform.then(|| light_pipelines(context, &settings)).transpose()?,
+            environment_light: uniform.then(light_buffer).transpose()?,
+            map: None,
+            tensor,
+        })
+    }
+
+    /// The settings it was made for.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Adds a mesh of `vertices` vertices, in the host's order. `vectors` are vertex-major, order^2 values a vertex:
+    /// transfer vectors for colours (1/pi in them, no albedo), static visibility vectors for incident radiance; only
+    /// a mesh whose incident radiance has dynamic visibility can do without. The copy to the device becomes part of
+    /// the next frame that uses the mesh.
+    ///
+    /// # Errors
+    /// [`RelightError::Length`], [`RelightError::Values`] with a count for values that are not finite or do not fit
+    /// half floats, [`RelightError::Size`] for no vertices, [`RelightError::Settings`], [`RelightError::Gpu`].
+    pub fn add_mesh(
+        &mut self,
+        context: &Context,
+        name: &str,
+        vertices: u32,
+        vectors: Option<&[f32]>,
+    ) -> Result<MeshId, RelightError> {
+        if vectors.is_none() && (self.settings.output == Output::Colour || !self.settings.visibility) {
+            return Err(RelightError::Settings {
+                what: "a mesh without vectors has nothing to be lit by",
+                mend: "give its vectors, or use Output::Incident with dynamic visibility",
+            });
+        }
+        let mesh = Mesh::new(context, &self.settings, self.chunk_vertices, name, vertices, vectors)?;
+        Ok(self.meshes.add(mesh))
+    }
+
+    /// Puts a mesh in the place of another, whose memory goes back when no frame in flight can use it. The old id is
+    /// refused from now on. On an error the old mesh stays.
+    ///
+    /// # Errors
+    /// As [`Relight::add_mesh`], and [`RelightError::UnknownMesh`].
+    pub fn replace_mesh(
+        &mut self,
+        context: &Context,
+        old: MeshId,
+        name: &str,
+        vertices: u32,
+        vectors: Option<&[f32]>,
+    ) -> Result<MeshId, RelightError> {
+        self.meshes.get(old)?;
+        let new = self.add_mesh(context, name, vertices, vectors)?;
+        self.meshes.remove(old)?;
+        Ok(new)
+    }
+
+    /// Drops a mesh; its memory goes back when no frame in flight, and no plan still held, can use it.
+    ///
+    /// # Errors
+    /// [`RelightError::UnknownMesh`].
+    pub fn drop_mesh(&mut self, mesh: MeshId) -> Result<(), RelightError> {
+        self.meshes.remove(mesh)
+    }
+
+    /// Forgets that the environment was projected: for a host that threw away a recorded frame.
+    pub fn forget_environment(&self) {
+        if let Some(map) = &self.map {
+            map.projected.forget();
+        }
+    }
+
+    /// The tables for an environment of that size, made on first use and when the size changes.
+    pub(crate) fn map(&mut self, context: &Context, width: u32, height: u32) -> Result<&Map, RelightError> {
+        let fits = |map: &Map| map.width == width && map.height == height;
+        let map = match self.map.take() {
+            Some(map) if fits(&map) => map,
+            _ => {
+                let tables = MapTables::new(self.settings.order, width, height)?;
+                let columns = Resident::from_values(context, "relight column table", &tables.columns)?;
+                let rows = Resident::from_values(context, "relight row table", &tables.rows)?;
+                Map { width, height, columns, rows, projected: Projected::default() }
+            }
+        };
+        Ok(self.map.insert(map))
+    }
+}
+
+/// Vertices that chunks and instances are aligned to.
+pub(crate) fn alignment(settings: &Settings) -> u32 {
+    match settings.method {
+        Method::Compute => VERTEX_ALIGNMENT,
+        Method::Fragment => RECTANGLE_WIDTH,
+    }
+}
+
+/// Whether light meets visibility, in some kernel that the settings can need.
+fn shadows(settings: &Settings) -> bool {
+    settings.visibility || settings.output == Output::Incident
+}
+
+/// A compute pipeline of a kernel.
+pub(crate) fn compute(context: &Context, kernel: &Kernel) -> Result<ComputePipeline, GpuError> {
+    context.create_compute_pipeline(&ComputePipelineDesc {
+        name: kernel.name,
+        spirv: &kernel.words(),
+        bindings: &kernel.binding_descs(),
+        push_constant_size: kernel.push_constant_size,
+    })
+}
+
+fn light_pipelines(context: &Context, settings: &Settings) -> Result<LightPipelines, GpuError> {
+    let order = settings.order;
+    let matrix = shadows(settings).then(|| compute(context, &kernels::product_matrix(order)));
+    Ok(LightPipelines {
+        rows: compute(context, &kernels::environment_rows(order))?,
+        bands: compute(context, &kernels::environment_bands(order))?,
+        rotate: compute(context, &kernels::rotate(order))?,
+        matrix: matrix.transpose()?,
+    })
+}
+
+fn vertex_pipelines(context: &Context, settings: &Settings) -> Result<VertexPipelines, GpuError> {
+    let pipeline = |source| match settings.method {
+        Method::Compute => {
+            Ok(VertexPipeline::Compute(compute(context, &kernels::vertices(settings, source))?))
+        }
+        Method::Fragment => Ok(VertexPipeline::Rectangle(rectangle(context, settings, source)?)),
+    };
+    let dynamic = settings.visibility && settings.output == Output::Incident;
+    Ok(VertexPipelines {
+        baked: pipeline(Source::Baked)?,
+        both: settings.visibility.then(|| pipeline(Source::Both)).transpose()?,
+        dynamic: dynamic.then(|| pipeline(Source::Dynamic)).transpose()?,
+    })
+}
+
+fn rectangle(context: &Context, settings: &Settings, source: Source) -> Result<GraphicsPipeline, GpuError> {
+    let kernel = kernels::rectangle(settings, source);
+    context.create_graphics_pipeline(&GraphicsPipelineDesc {
+        name: kernel.name,
+        vertex: &kernels::rectangle_vertex(),
+        fragment: Some(&kernel.words()),
+        bindings: &kernel.binding_descs(),
+        push_constant_size: kernel.push_constant_size,
+        vertex_buffers: &[],
+        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+        cull: vk::CullModeFlags::NONE,
+        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+        depth: None,
+        colors: &[RECTANGLE_FORMAT],
+        blend: Blend::None,
+    })
+}

@@ -1,0 +1,66 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+// First half of the exact projection of an equirectangular environment, constant on each texel, on the SH basis.
+// The basis separates into a function of the row and one of the column, so its integral over a texel does too.
+// One workgroup a row: the sums over its columns of radiance times the column integrals for m = 1 - ORDER to
+// ORDER - 1, in a fixed order: runs of RUN texels, then their sums, then a tree.
+//
+// ORDER  1-6
+
+#define AZIMUTHS (2 * ORDER - 1)
+#define WORKGROUP 128
+#define RUN 16
+
+layout(local_size_x = WORKGROUP) in;
+
+layout(set = 0, binding = 0) uniform texture2D environment;
+
+// [column][m + ORDER - 1], radians.
+layout(std430, set = 0, binding = 1) readonly buffer Columns {
+    float integrals[];
+} columns;
+
+// [row][m + ORDER - 1].
+layout(std430, set = 0, binding = 2) buffer Rows {
+    vec4 sums[];
+} rows;
+
+layout(push_constant) uniform Size {
+    uint width;
+    uint height;
+} size;
+
+shared vec4 partial[AZIMUTHS * WORKGROUP];
+
+void main()
+{
+    uint row = gl_WorkGroupID.x;
+    uint lane = gl_LocalInvocationID.x;
+    vec3 total[AZIMUTHS];
+    for (uint m = 0u; m < uint(AZIMUTHS); ++m) { total[m] = vec3(0.0); }
+    for (uint first = lane; first < size.width; first += uint(RUN * WORKGROUP)) {
+        vec3 run[AZIMUTHS];
+        for (uint m = 0u; m < uint(AZIMUTHS); ++m) { run[m] = vec3(0.0); }
+        for (uint k = 0u; k < uint(RUN); ++k) {
+            uint column = first + k * uint(WORKGROUP);
+            if (column < size.width) {
+                vec3 radiance = texelFetch(environment, ivec2(column, row), 0).rgb;
+                for (uint m = 0u; m < uint(AZIMUTHS); ++m) {
+                    run[m] = fma(vec3(columns.integrals[column * uint(AZIMUTHS) + m]), radiance, run[m]);
+                }
+            }
+        }
+        for (uint m = 0u; m < uint(AZIMUTHS); ++m) { total[m] += run[m]; }
+    }
+    for (uint m = 0u; m < uint(AZIMUTHS); ++m) { partial[m * uint(WORKGROUP) + lane] = vec4(total[m], 0.0); }
+    for (uint half_count = uint(WORKGROUP) / 2u; half_count > 0u; half_count /= 2u) {
+        barrier();
+        if (lane < half_count) {
+            for (uint m = 0u; m < uint(AZIMUTHS); ++m) {
+                partial[m * uint(WORKGROUP) + lane] += partial[m * uint(WORKGROUP) + lane + half_count];
+            }
+        }
+    }
+    barrier();
+    if (lane < uint(AZIMUTHS)) { rows.sums[row * uint(AZIMUTHS) + lane] = partial[lane * uint(WORKGROUP)]; }
+}
