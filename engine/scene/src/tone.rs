@@ -20,7 +20,7 @@ const DESATURATION: f32 = 0.15;
 /// n = 1 - (1 - START)^2 / (p + 1 - 2 START), then mixed with n white by 1 - 1 / (DESATURATION (p - n) + 1).
 /// NaN and negative channels count as 0, infinite ones as the largest number.
 pub fn tone_map(rgb: [f32; 3]) -> [f32; 3] {
-    let rgb = rgb.map(|value| value.max(0.0).min(f32::MAX));
+    let rgb = rgb.map(|value| if value > 0.0 { value.min(f32::MAX) } else { 0.0 });
     let low = rgb[0].min(rgb[1]).min(rgb[2]);
     let offset = if low < 2.0 * F0 { low - low * low / (4.0 * F0) } else { F0 };
     let rgb = rgb.map(|value| value - offset);

@@ -14,7 +14,7 @@ pub(super) fn structure(file: &Path, root: &json::Root) -> Result<(), SceneError
     accessor_references(file, root)?;
     image_sources(file, root)?;
     camera_types(file, root)?;
-    animation_samplers(file, root)?;
+    animation_channels(file, root)?;
     node_tree(file, root)
 }
 
@@ -65,20 +65,22 @@ fn camera_types(file: &Path, root: &json::Root) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Channels name samplers of their animation.
-fn animation_samplers(file: &Path, root: &json::Root) -> Result<(), SceneError> {
+/// Channels name a sampler of their animation, a node and a property of it.
+fn animation_channels(file: &Path, root: &json::Root) -> Result<(), SceneError> {
     for (index, animation) in root.animations.iter().enumerate() {
         for (number, channel) in animation.channels.iter().enumerate() {
-            if channel.sampler.value() >= animation.samplers.len() {
-                let name = label("animation", index, animation.name.as_deref());
-                let problem = format!("sampler {} does not exist", channel.sampler.value());
-                return Err(invalid(
-                    file,
-                    format!("{name}, channel {number}"),
-                    problem,
-                    "export the file again",
-                ));
-            }
+            let (sampler, node) = (channel.sampler.value(), channel.target.node.value());
+            let problem = if sampler >= animation.samplers.len() {
+                format!("sampler {sampler} does not exist")
+            } else if node >= root.nodes.len() {
+                format!("node {node} does not exist")
+            } else if matches!(channel.target.path, Checked::Invalid) {
+                "its path is none of translation, rotation, scale and weights".to_owned()
+            } else {
+                continue;
+            };
+            let name = label("animation", index, animation.name.as_deref());
+            return Err(invalid(file, format!("{name}, channel {number}"), problem, "export the file again"));
         }
     }
     Ok(())

@@ -26,6 +26,9 @@ pub(crate) fn load(file: &Path) -> Result<Scene, SceneError> {
     let primitives = primitive::read(&document, &mut scene, &mut warnings)?;
     nodes::read(&document, &primitives, &mut scene, &mut warnings)?;
     animation::read(&document, &mut scene, &mut warnings)?;
+    if scene.instances.is_empty() {
+        warnings.add("scene", "no mesh is placed; make a node of the default scene name one");
+    }
     scene.warnings = warnings.list;
     Ok(scene)
 }

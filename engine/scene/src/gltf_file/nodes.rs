@@ -138,11 +138,11 @@ fn place(
             skin = None;
         }
         let greatest = joints.iter().flatten().copied().max().unwrap_or(0);
-        if let (Some(count), Some(_)) = (joint_count, skin) {
-            if usize::from(greatest) >= count {
-                let problem = format!("a vertex names joint {greatest}, but the skin has {count}");
-                return Err(invalid(warnings.file, item, problem, "export the skinned mesh again"));
-            }
+        if let (Some(count), Some(_)) = (joint_count, skin)
+            && usize::from(greatest) >= count
+        {
+            let problem = format!("a vertex names joint {greatest}, but the skin has {count}");
+            return Err(invalid(warnings.file, item, problem, "export the skinned mesh again"));
         }
         let material = scene.meshes[*mesh].material;
         let name = name_of("node", node.index(), node.name());

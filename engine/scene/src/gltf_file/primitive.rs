@@ -174,7 +174,9 @@ fn triangle_list(file: &Path, item: &str, mode: Mode, sequence: Vec<u32>) -> Res
         Mode::TriangleFan => {
             Ok(sequence[1..].windows(2).flat_map(|edge| [edge[0], edge[1], sequence[0]]).collect())
         }
-        _ if sequence.len() % 3 != 0 => wrong(format!("{} indices are not whole triangles", sequence.len())),
+        _ if !sequence.len().is_multiple_of(3) => {
+            wrong(format!("{} indices are not whole triangles", sequence.len()))
+        }
         _ => Ok(sequence),
     }
 }

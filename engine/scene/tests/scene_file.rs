@@ -1,0 +1,159 @@
+//! Scene files: what the README promises, line by line.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
+
+mod support;
+
+use airglow_scene::{
+    Exposure, FloatImage, LightKind, Quality, Scene, SceneError, Shadow, Storage, image_io, load,
+};
+use glam::Vec3;
+use support::{full_model, put};
+use tempfile::TempDir;
+
+/// A folder with `model.glb` and `sky.exr` (4 x 2, one pixel of 100).
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    put(&folder, "model.glb", &full_model().glb());
+    let mut pixels = vec![[0.5; 3]; 8];
+    pixels[3] = [100.0, 50.0, 0.0];
+    let sky = FloatImage { width: 4, height: 2, pixels };
+    image_io::write_exr(&folder.path().join("sky.exr"), &sky).unwrap();
+    folder
+}
+
+fn load_text(folder: &TempDir, text: &str) -> Result<Scene, SceneError> {
+    load(&put(folder, "scene.toml", text.as_bytes()))
+}
+
+#[test]
+fn every_table_arrives() {
+    let text = r#"
+        [[gltf]]
+        file = "model.glb"
+        translation = [0, 10, 0]
+        rotation = { yaw = 90 }
+        scale = 2
+
+        [[instance]]
+        file = "model.glb"
+        mesh = "mesh"
+        translation = [5, 0, 0]
+        material = { base_color = [0.5, 0.25, 0.125], roughness = 0.3 }
+
+        [environment]
+        file = "sky.exr"
+        rotation = { axis = [1, 0, 0], degrees = 180 }
+        scale = 2.0
+
+        [medium]
+        visibility = 391.2
+        albedo = 0.9
+        anisotropy = 0.7
+
+        [[emitter]]
+        center = [1, 2, 3]
+        radius = 0.1
+        radiance = [10, 5, 1]
+
+        [[blocker]]
+        name = "ball"
+        center = [0, 0, 0]
+        radius = 0.5
+
+        [camera]
+        from = [0, 0, 5]
+        to = [0, 0, 0]
+        vertical_degrees = 60
+
+        [exposure]
+        ev = -1
+
+        [quality]
+        order = 5
+        rays = 256
+        storage = "f16"
+        shadow = "object"
+    "#;
+    let scene = load_text(&folder(), text).unwrap();
+    // One mesh in memory, placed twice; the second with its own surface.
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 2));
+    let (placed, extra) = (&scene.instances[0], &scene.instances[1]);
+    assert_eq!((placed.skin, extra.skin, placed.material), (Some(0), None, 0));
+    assert_eq!(scene.materials[extra.material].base_color, [0.5, 0.25, 0.125, 1.0]);
+    // Scaled by 2, turned X to -Z, lifted by 10.
+    let corner = placed.transform.transform_point3(Vec3::X);
+    assert!(corner.distance(Vec3::new(0.0, 10.0, -2.0)) < 1e-5, "{corner}");
+    assert_eq!(extra.transform.transform_point3(Vec3::X), Vec3::new(6.0, 0.0, 0.0));
+    let knee = &scene.nodes[scene.skins[0].joints[1]];
+    assert_eq!(knee.name, "knee");
+    let at = knee.global.w_axis.truncate();
+    assert!(at.distance(Vec3::new(0.0, 12.0, 0.0)) < 1e-5, "{at}");
+    assert_eq!(scene.nodes[scene.animations[0].channels[0].node].name, "knee");
+    let LightKind::Spot { position, direction, .. } = scene.lights[0].kind else { panic!() };
+    assert_eq!(position, [0.0, 10.0, 0.0]);
+    assert!(Vec3::from(direction).distance(Vec3::NEG_X) < 1e-6, "{direction:?}");
+
+    let environment = scene.environment.as_ref().unwrap();
+    assert_eq!((environment.width, environment.height, environment.pixels[3]), (4, 2, [200.0, 100.0, 0.0]));
+    assert!((environment.rotation * Vec3::Y).distance(Vec3::NEG_Y) < 1e-6);
+    let medium = scene.medium.unwrap();
+    assert!((medium.extinction[1] - 0.01).abs() < 1e-5, "{medium:?}: ln 50 / 391.2 is 0.01");
+    assert_eq!((medium.albedo, medium.anisotropy), ([0.9; 3], 0.7));
+    assert_eq!((scene.emitters[0].radiance, scene.blockers[0].name.as_str()), ([10.0, 5.0, 1.0], "ball"));
+    assert_eq!(scene.camera().position(), Vec3::new(0.0, 0.0, 5.0));
+    assert_eq!(scene.exposure, Exposure::Fixed { scale: 0.5 });
+    let quality = Quality { order: 5, rays: 256, storage: Storage::F16, shadow: Shadow::Object };
+    assert_eq!(scene.quality, quality);
+}
+
+#[test]
+fn a_missing_table_is_its_default() {
+    let scene = load_text(&folder(), "[[gltf]]\nfile = 'model.glb'\n[camera]\nname = 'camera 0'").unwrap();
+    assert_eq!(scene.exposure, Exposure::Automatic { key: 0.18 });
+    assert_eq!(scene.quality, Quality::default());
+    assert!(scene.environment.is_none() && scene.medium.is_none());
+    assert_eq!(scene.camera().position(), Vec3::new(0.0, 0.0, 3.0));
+    let empty = load_text(&folder(), "").unwrap();
+    assert!(empty.warnings[0].message.contains("no mesh is placed"), "{:?}", empty.warnings);
+}
+
+#[test]
+fn faults_carry_line_and_column() {
+    let folder = folder();
+    let faults = [
+        ("\n[qualty]\norder = 4", 2, "unknown field `qualty`"),
+        ("[quality]\norder = 7", 1, "order is a whole number from 1 to 6"),
+        ("[quality]\nstorage = 'f64'", 2, "unknown variant `f64`"),
+        ("[medium]\nextinction = 1\nvisibility = 3", 1, "either extinction (1/m) or visibility (m)"),
+        ("[medium]\nvisibility = -3.0", 2, "-3 found, a positive number expected"),
+        ("[medium]\nvisibility = 3\nanisotropy = 1.0", 3, "above -1 and below 1"),
+        ("[medium]\nextinction = [1, -1, 0]", 2, "three of them: [red, green, blue]"),
+        ("[[emitter]]\ncenter = [0, nan, 0]\nradius = 1\nradiance = 1", 2, "a finite number expected"),
+        ("[environment]\nfile = 'sky.exr'\nrotation = { yaw = 1, degrees = 2 }", 3, "a rotation is"),
+        ("[camera]\nfrom = [0, 0, 0]\nto = [0, 1, 0]", 1, "not only along up"),
+        ("[camera]\nname = 'other'", 2, "no camera \"other\" in the glTF files; they have []"),
+        ("[exposure]\nev = 1\nscale = 2", 1, "one of key (automatic), ev (stops) and scale"),
+        ("[[gltf]]\nfile = 'model.glb'\nscale = 0", 3, "a number other than 0"),
+        ("[[instance]]\nfile = 'model.glb'\nmesh = 'chair'", 3, "places no mesh \"chair\""),
+        ("[[gltf]]\nfile = 'model.glb'\nmesh = 'mesh'", 3, "use [[instance]]"),
+        ("[[gltf]\n", 1, ""),
+    ];
+    for (text, expected_line, expected) in faults {
+        match load_text(&folder, text) {
+            Err(SceneError::SceneFile { line, problem, .. }) => {
+                assert!(line == expected_line && problem.contains(expected), "{text:?}: {line}: {problem}");
+            }
+            other => panic!("{text:?} gives {other:?}"),
+        }
+    }
+    let message = load_text(&folder, "[[gltf]]\nfile = 'none.glb'").unwrap_err().to_string();
+    assert!(message.contains("none.glb: cannot be read"), "{message}");
+}
+
+#[test]
+fn a_scale_beyond_f32_is_refused() {
+    let text = "[environment]\nfile = 'sky.exr'\nscale = 1e38";
+    let error = load_text(&folder(), text).unwrap_err();
+    assert!(matches!(error, SceneError::Radiance { count: 1, x: 3, y: 0, .. }), "{error}");
+}
