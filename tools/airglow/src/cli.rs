@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::compare;
+use crate::commands::{bake, compare, devices, render};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -51,5 +51,8 @@ pub struct Global {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    Devices(devices::Arguments),
+    Bake(bake::Arguments),
+    Render(render::Arguments),
     Compare(compare::Arguments),
 }

@@ -10,6 +10,7 @@ mod compare;
 mod eval;
 mod failure;
 mod files;
+mod host;
 mod output;
 mod report;
 

@@ -1,6 +1,10 @@
 //! One file for each command: its arguments, and what it does with the rooms of the library.
 
+pub mod bake;
 pub mod compare;
+pub mod devices;
+pub mod render;
+pub mod scene;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Outcome;
@@ -8,7 +12,11 @@ use crate::output::Output;
 
 /// Runs the command asked for.
 pub fn run(cli: Cli, output: &Output) -> Outcome {
+    let global = &cli.global;
     match cli.command {
+        Command::Devices(arguments) => devices::run(&arguments, output),
+        Command::Bake(arguments) => bake::run(&arguments, output),
+        Command::Render(arguments) => render::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
     }
 }

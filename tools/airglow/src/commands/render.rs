@@ -1,0 +1,242 @@
+//! `airglow render`: a picture of a scene.
+
+use std::path::{Path, PathBuf};
+
+use airglow_scene::image_io::{write_exr, write_png_bytes};
+use airglow_scene::{Exposure, Scene};
+use clap::{Args, ValueEnum};
+use glam::DQuat;
+use serde::Serialize;
+
+use crate::cli::Global;
+use crate::commands::scene::SceneOptions;
+use crate::failure::{Failure, Outcome};
+use crate::files;
+use crate::host::environment_samples::EnvironmentSamples;
+use crate::host::renderer::{self, Picture, Renderer, Settings, WARM_UP};
+use crate::host::{device, transfer, truth};
+use crate::output::Output;
+use crate::report::model::Machine;
+
+/// Draw a scene and write the picture: scene-linear EXR, or exposed and tone-mapped PNG.
+///
+/// What the scene needs is baked first, or read from the cache. Without --frames a few frames are drawn so that the
+/// times of the passes mean something; the last one is the picture.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  airglow render assets/scenes/spot.toml -o spot.png
+  airglow render assets/scenes/spot.toml -o spot.exr --size 1920x1080 --stat spot.json --frames 200
+  airglow render assets/scenes/spot.toml -o ambient.png --without relight
+  airglow render assets/scenes/spot.toml -o truth.exr --reference")]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// Where the picture goes: .exr (scene-linear) or .png. May be given twice, for both.
+    #[arg(long, short = 'o', value_name = "FILE", required = true)]
+    output: Vec<PathBuf>,
+    /// Pixels of the picture.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size)]
+    size: [u32; 2],
+    /// Samples along each side of a pixel.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
+    samples: u32,
+    /// Frames drawn, the first of them as warm-up.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: u32,
+    /// Turn the environment about the vertical axis, degrees, counter-clockwise seen from above.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
+    turn: f64,
+    /// Factor from scene-linear values to the display, instead of the scene file's.
+    #[arg(long, value_name = "FACTOR")]
+    exposure: Option<f32>,
+    /// Leave a pass out: the picture shows what it adds. Without relight, light comes evenly from everywhere.
+    #[arg(long, value_enum)]
+    without: Option<PassName>,
+    /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass.
+    #[arg(long, conflicts_with = "without")]
+    reference: bool,
+    /// Rays for each vertex of the reference.
+    #[arg(long, default_value_t = 1024, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(2..))]
+    reference_rays: u32,
+    /// Write device, times and memory of the passes here, as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    stat: Option<PathBuf>,
+}
+
+/// Passes that a host can leave out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PassName {
+    /// Relighting by precomputed radiance transfer.
+    Relight,
+}
+
+/// What `--stat` writes.
+#[derive(Serialize)]
+struct Stat {
+    machine: Machine,
+    width: u32,
+    height: u32,
+    frames: usize,
+    exposure: f32,
+    passes: Vec<PassStat>,
+    /// From the first pass's start to the last one's end, milliseconds.
+    span_ms: Option<f64>,
+    /// All passes added up, milliseconds.
+    sum_ms: Option<f64>,
+    /// Median CPU time of recording a frame, milliseconds.
+    record_ms: f64,
+    /// Device memory by owner.
+    memory: Vec<MemoryStat>,
+}
+
+#[derive(Serialize)]
+struct PassStat {
+    name: String,
+    median_ms: f64,
+}
+
+#[derive(Serialize)]
+struct MemoryStat {
+    owner: String,
+    bytes: u64,
+    objects: u64,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
+    for path in &arguments.output {
+        check_extension(path)?;
+    }
+    let scene = arguments.scene.load(output)?;
+    let baked = transfer::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
+    let truth = arguments.reference.then(|| reference(&scene, arguments, output)).transpose()?;
+    let requirements = renderer::requirements(&scene);
+    let (picture, stat) = device::with(global, &requirements, |device| {
+        let mut renderer = Renderer::new(device, &scene, &baked, arguments.size)?;
+        if let Some(colours) = &truth {
+            renderer.light_by(colours)?;
+        }
+        let settings = settings(arguments, &scene, &mut renderer)?;
+        let picture = renderer.draw(&settings, arguments.frames as usize)?;
+        let stat = stat(device, &settings, &picture);
+        Ok((picture, stat))
+    })?;
+    for path in &arguments.output {
+        write(path, &picture)?;
+        output.say(format!("wrote {}", path.display()));
+    }
+    if let Some(path) = &arguments.stat {
+        let json = serde_json::to_vec_pretty(&stat).map_err(Failure::work)?;
+        files::write(path, &json)?;
+    }
+    output.result(&stat, text)
+}
+
+/// The settings of the final frames; automatic exposure looks at one frame first.
+fn settings(arguments: &Arguments, scene: &Scene, renderer: &mut Renderer<'_>) -> Outcome<Settings> {
+    let mut settings = Settings {
+        size: arguments.size,
+        samples: arguments.samples,
+        exposure: 1.0,
+        turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
+        without_relight: arguments.without == Some(PassName::Relight),
+    };
+    settings.exposure = match (arguments.exposure, scene.exposure) {
+        (Some(factor), _) if factor > 0.0 && factor.is_finite() => factor,
+        (Some(factor), _) => {
+            return Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")));
+        }
+        (None, Exposure::Fixed { scale }) => scale,
+        (None, automatic) => automatic.scale(&renderer.draw(&settings, 1)?.linear.pixels),
+    };
+    Ok(settings)
+}
+
+/// Colours of all vertices of all instances by rays; shadows are cast as the bake casts them.
+fn reference(scene: &Scene, arguments: &Arguments, output: &Output) -> Outcome<Vec<Vec<[f32; 3]>>> {
+    let Some(environment) = &scene.environment else {
+        return Err(Failure::input("--reference needs an environment; name one with --environment"));
+    };
+    let mut turned = environment.clone();
+    turned.rotation = glam::Quat::from_rotation_y(arguments.turn.to_radians() as f32) * turned.rotation;
+    let samples = EnvironmentSamples::new(&turned).map_err(Failure::input)?;
+    truth::of_scene(scene, &samples, arguments.reference_rays, output)
+}
+
+fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> Stat {
+    let mut cpu = picture.cpu_milliseconds.clone();
+    cpu.sort_by(f64::total_cmp);
+    let timing = picture.timing.as_ref();
+    Stat {
+        machine: device.machine(),
+        width: settings.size[0],
+        height: settings.size[1],
+        frames: timing.map_or(0, |timing| timing.frames),
+        exposure: settings.exposure,
+        passes: timing.map_or(Vec::new(), |timing| {
+            let pass = |pass: &airglow_gpu::PassTime| PassStat { name: pass.name.clone(), median_ms: 1e3 * pass.median };
+            timing.passes.iter().map(pass).collect()
+        }),
+        span_ms: timing.map(|timing| 1e3 * timing.span),
+        sum_ms: timing.map(|timing| 1e3 * timing.sum),
+        record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
+        memory: device
+            .context()
+            .memory_report()
+            .into_iter()
+            .map(|owner| MemoryStat { owner: owner.owner, bytes: owner.bytes, objects: owner.objects })
+            .collect(),
+    }
+}
+
+fn text(stat: &Stat) -> String {
+    let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
+    for pass in &stat.passes {
+        text.push_str(&format!("  {:32} {:9.3} ms\n", pass.name, pass.median_ms));
+    }
+    match (stat.span_ms, stat.sum_ms) {
+        (Some(span), Some(sum)) => {
+            text.push_str(&format!("  span {span:.3} ms, sum {sum:.3} ms, median of {} frames\n", stat.frames));
+        }
+        _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
+    }
+    for owner in &stat.memory {
+        text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));
+    }
+    text
+}
+
+fn check_extension(path: &Path) -> Outcome {
+    match path.extension().and_then(|kind| kind.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("exr" | "png") => Ok(()),
+        _ => Err(Failure::usage(format!("{}: name a .exr or .png file", path.display()))),
+    }
+}
+
+fn write(path: &Path, picture: &Picture) -> Outcome {
+    if path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("exr")) {
+        return write_exr(path, &picture.linear).map_err(Failure::work);
+    }
+    let (width, height) = (picture.linear.width, picture.linear.height);
+    write_png_bytes(path, width, height, &picture.display).map_err(Failure::work)
+}
+
+/// `WIDTHxHEIGHT`.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=8192).contains(side));
+    let parsed = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    parsed.ok_or_else(|| format!("`{text}` is no size; write it like 1280x720, sides from 1 to 8192"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::size;
+
+    #[test]
+    fn sizes_are_two_sides_within_reason() {
+        assert_eq!(size("1280x720"), Ok([1280, 720]));
+        for bad in ["1280", "0x4", "9999x1", "axb", "-1x2"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The options of every command that takes a scene.
+
+use std::path::PathBuf;
+
+use airglow_scene::{Quality, Scene, Shadow, Storage};
+use clap::{Args, ValueEnum};
+
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+
+/// A scene, and what its light transport is computed with.
+#[derive(Clone, Debug, Args)]
+pub struct SceneOptions {
+    /// A scene file (.toml) or a glTF file (.glb, .gltf).
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Light the scene by this equirectangular map (.exr, .hdr) instead of the scene file's.
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
+    /// Bands of spherical harmonics, 1 to 6, instead of the scene file's.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=6))]
+    pub order: Option<u32>,
+    /// Rays for each vertex of the bake, instead of the scene file's.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub rays: Option<u32>,
+    /// Number format of transfer vectors on the device, instead of the scene file's.
+    #[arg(long, value_enum)]
+    pub storage: Option<StorageName>,
+    /// What casts shadows on what, instead of the scene file's.
+    #[arg(long, value_enum)]
+    pub shadow: Option<ShadowName>,
+    /// Folder of baked transfer.
+    #[arg(long, value_name = "FOLDER", default_value = ".cache/airglow")]
+    pub cache: PathBuf,
+}
+
+/// `--storage`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StorageName {
+    /// 4 bytes a coefficient.
+    F32,
+    /// 2 bytes a coefficient.
+    F16,
+}
+
+/// `--shadow`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShadowName {
+    /// Everything shadows everything: one bake for each instance.
+    Scene,
+    /// Each mesh shadows itself: one bake for each mesh.
+    Object,
+    /// Nothing casts a shadow.
+    Unshadowed,
+}
+
+impl SceneOptions {
+    /// Loads the scene, repeats its warnings, and applies the options that override it.
+    pub fn load(&self, output: &Output) -> Outcome<Scene> {
+        let mut scene = airglow_scene::load(&self.scene).map_err(Failure::input)?;
+        for warning in &scene.warnings {
+            output.warn(warning.to_string());
+        }
+        if scene.instances.is_empty() {
+            return Err(Failure::input(format!("{}: there is nothing to draw; add a mesh", self.scene.display())));
+        }
+        if let Some(path) = &self.environment {
+            let environment = airglow_scene::image_io::read_environment(path).map_err(Failure::input)?;
+            scene.environment = Some(environment);
+        }
+        let quality = &mut scene.quality;
+        *quality = Quality {
+            order: self.order.unwrap_or(quality.order),
+            rays: self.rays.unwrap_or(quality.rays),
+            storage: self.storage.map_or(quality.storage, |name| match name {
+                StorageName::F32 => Storage::F32,
+                StorageName::F16 => Storage::F16,
+            }),
+            shadow: self.shadow.map_or(quality.shadow, |name| match name {
+                ShadowName::Scene => Shadow::Scene,
+                ShadowName::Object => Shadow::Object,
+                ShadowName::Unshadowed => Shadow::Unshadowed,
+            }),
+        };
+        Ok(scene)
+    }
+}

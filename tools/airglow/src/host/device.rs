@@ -1,0 +1,153 @@
+//! The host's device: opened here, then handed to the library by the road that any engine takes.
+
+use airglow_gpu::ash::vk;
+use airglow_gpu::open::{DeviceKind, DeviceLine, FrameSemaphores, FrameLoop, OpenDevice, OpenOptions, Selector};
+use airglow_gpu::{Context, Execution, GpuError, Imports, Recorder, Requirements, Timing};
+use airglow_graph::Limits;
+
+use crate::cli::Global;
+use crate::failure::{Failure, Outcome};
+use crate::report::model::Machine;
+
+/// How many frames may be on the device at once.
+const FRAMES_IN_FLIGHT: u32 = 2;
+
+/// An open device and what the library made of it.
+pub struct Device<'d> {
+    open: &'d OpenDevice,
+    context: &'d Context,
+}
+
+/// Opens the device that `global` asks for, adopts it, runs `work` on it, and fails on any validation message.
+/// Nothing made from the context may leave `work`.
+pub fn with<R>(
+    global: &Global,
+    requirements: &Requirements,
+    work: impl FnOnce(&Device<'_>) -> Outcome<R>,
+) -> Outcome<R> {
+    let selector = global.device.as_deref().map_or(Ok(Selector::Best), str::parse);
+    let Ok(selector) = selector;
+    let options =
+        OpenOptions { selector, validation: global.validate, ..OpenOptions::new(requirements) };
+    let open = OpenDevice::open(&options).map_err(Failure::device)?;
+    let result = {
+        // SAFETY: `context` and, by the contract of this function, all that `work` makes from it are dropped in this
+        // block, before `open`; `work` waits for what it submits (`Device::run`, `Device::frames`), and so does the
+        // wait below.
+        let context = unsafe { open.adopt(FRAMES_IN_FLIGHT) }.map_err(Failure::device)?;
+        let result = work(&Device { open: &open, context: &context });
+        open.wait_idle().map_err(Failure::work)?;
+        result
+    };
+    let messages = open.take_messages();
+    if let Some(first) = messages.first() {
+        return Err(Failure::check(format!("{} validation messages, the first: {first:?}", messages.len())));
+    }
+    result
+}
+
+impl Device<'_> {
+    /// The library's side of the device.
+    pub fn context(&self) -> &Context {
+        self.context
+    }
+
+    /// Records commands, submits them and waits until they are done.
+    pub fn run<R>(&self, record: impl FnOnce(&mut Recorder<'_>) -> Result<R, GpuError>) -> Result<R, GpuError> {
+        self.open.run(self.context, record)
+    }
+
+    /// Records and submits a plan `count` times, calling `before` ahead of each, and waits for all of them. Returns
+    /// the CPU milliseconds of each recording.
+    pub fn frames(
+        &self,
+        execution: &mut Execution,
+        imports: &Imports,
+        timing: Option<&mut Timing>,
+        count: usize,
+        mut before: impl FnMut(usize) -> Outcome,
+    ) -> Outcome<Vec<f64>> {
+        let mut timing = timing;
+        let mut frames = FrameLoop::new(self.open, self.context).map_err(Failure::work)?;
+        let mut cpu = Vec::with_capacity(count);
+        for frame in 0..count {
+            before(frame)?;
+            let recorded = frames.frame(FrameSemaphores::default(), |command_buffer| {
+                // SAFETY: the loop's command buffer is recording and submitted once, in this frame; imports are in
+                // their entry states, since uploads are done and every plan leaves them in its exit states, which
+                // are the entry states; all recordings go to one queue in order; passes use what they declared.
+                unsafe { execution.record(self.context, command_buffer, imports, timing.as_deref_mut()) }
+            });
+            cpu.push(1e3 * recorded.map_err(Failure::work)?.cpu.as_secs_f64());
+        }
+        frames.finish().map_err(Failure::work)?;
+        if let Some(timing) = timing {
+            timing.collect().map_err(Failure::work)?;
+        }
+        Ok(cpu)
+    }
+
+    /// What the graph may ask of the device.
+    pub fn limits(&self) -> Limits {
+        let limits = self.context.limits();
+        Limits {
+            queue_family: self.open.queue_family(),
+            max_image_dimension_2d: limits.max_image_dimension2_d,
+            max_image_dimension_3d: limits.max_image_dimension3_d,
+            max_image_array_layers: limits.max_image_array_layers,
+            ..Limits::default()
+        }
+    }
+
+    /// Whether the device can render to and sample `format`.
+    pub fn renders(&self, format: vk::Format) -> bool {
+        let needed = vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
+        // SAFETY: the physical device is this instance's, and both are alive.
+        let properties = unsafe {
+            self.open.instance().get_physical_device_format_properties(self.open.physical_device(), format)
+        };
+        properties.optimal_tiling_features.contains(needed)
+    }
+
+    /// The device as reports name it.
+    pub fn machine(&self) -> Machine {
+        machine(self.open.line())
+    }
+}
+
+/// A device line as reports hold it.
+fn machine(line: &DeviceLine) -> Machine {
+    Machine {
+        device: line.name.clone(),
+        kind: kind_name(line.kind).to_owned(),
+        driver: line.driver.clone(),
+        clocks: clocks(line.kind),
+        software: line.kind == DeviceKind::Cpu,
+    }
+}
+
+/// The kind in the words that `--device` takes.
+pub fn kind_name(kind: DeviceKind) -> &'static str {
+    match kind {
+        DeviceKind::Discrete => "discrete",
+        DeviceKind::Integrated => "integrated",
+        DeviceKind::Virtual => "virtual",
+        DeviceKind::Cpu => "cpu",
+        DeviceKind::Other => "other",
+    }
+}
+
+/// Clocks of a software device, from the kernel's list of processors; other drivers do not tell.
+fn clocks(kind: DeviceKind) -> Option<String> {
+    if kind != DeviceKind::Cpu {
+        return None;
+    }
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let field = |name: &str| {
+        let line = text.lines().find(|line| line.starts_with(name))?;
+        line.split_once(':').map(|(_, value)| value.trim().to_owned())
+    };
+    let count = text.lines().filter(|line| line.starts_with("processor")).count();
+    let mhz: f64 = field("cpu MHz")?.parse().ok()?;
+    Some(format!("{count} x {}, {mhz:.0} MHz", field("model name")?))
+}

@@ -1,0 +1,229 @@
+//! The host's own draws: the scene with what the passes wrote for its vertices, then the sky, then the picture.
+
+use std::sync::Arc;
+
+use airglow_gpu::ash::vk;
+use airglow_gpu::{
+    Binding, BindingDesc, BindingKind, Blend, BufferSlice, ColorAttachment, ComputePipeline, ComputePipelineDesc, Context,
+    DepthAttachment, DepthState, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Load, Record, Recorder, Rendering,
+    Resources, VertexAttribute, VertexBufferLayout,
+};
+use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
+use bytemuck::{Pod, Zeroable};
+
+use super::scene::{DeviceScene, Draw, MaterialConstants};
+use super::shaders;
+use super::view::ViewConstants;
+
+const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+
+/// The pipelines of the host's draws, for one format of the HDR target.
+pub struct Pipelines {
+    lit: GraphicsPipeline,
+    ambient: GraphicsPipeline,
+    sky: GraphicsPipeline,
+    develop: ComputePipeline,
+    hdr: vk::Format,
+}
+
+/// The colours of a scene's vertices: a buffer, and where those of each instance begin.
+#[derive(Clone)]
+pub struct VertexColours {
+    /// `[f32; 4]` a vertex.
+    pub buffer: Handle<Buffer>,
+    /// First byte and size for each instance.
+    pub ranges: Vec<(u64, u64)>,
+}
+
+/// The picture as it leaves the graph.
+#[derive(Clone, Copy)]
+pub struct Developed {
+    /// Scene-linear RGB, three f32 a pixel.
+    pub linear: Handle<Buffer>,
+    /// sRGB, one u32 a pixel, red lowest.
+    pub display: Handle<Buffer>,
+}
+
+/// `Settings` of `host/develop.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct DevelopConstants {
+    size: [u32; 2],
+    samples: u32,
+    exposure: f32,
+}
+
+impl Pipelines {
+    /// Makes the pipelines; `hdr` is a float format with colour attachment and sampling.
+    pub fn new(context: &Context, hdr: vk::Format) -> Result<Self, GpuError> {
+        Ok(Self {
+            lit: scene_pipeline(context, hdr, true)?,
+            ambient: scene_pipeline(context, hdr, false)?,
+            sky: sky_pipeline(context, hdr)?,
+            develop: context.create_compute_pipeline(&ComputePipelineDesc {
+                name: "develop",
+                spirv: &shaders::develop(),
+                bindings: &[
+                    BindingDesc::new(0, BindingKind::SampledImage),
+                    BindingDesc::new(1, BindingKind::StorageBuffer),
+                    BindingDesc::new(2, BindingKind::StorageBuffer),
+                ],
+                push_constant_size: size_of::<DevelopConstants>() as u32,
+            })?,
+            hdr,
+        })
+    }
+
+    /// Draws the scene: lit by `colours` where a pass made them, else by the view's ambient light. Returns the HDR
+    /// target with the environment behind the surfaces.
+    pub fn scene(
+        &self,
+        graph: &mut Graph<Record>,
+        scene: &Arc<DeviceScene>,
+        view: &ViewConstants,
+        colours: Option<&VertexColours>,
+        environment: Option<Handle<Image>>,
+        size: [u32; 2],
+    ) -> Handle<Image> {
+        let mut pass = graph.pass("scene draw", PassKind::Graphics);
+        if let Some(colours) = colours {
+            pass.read(&colours.buffer, Access::VertexBuffer);
+        }
+        if let Some(environment) = &environment {
+            pass.read(environment, Access::FragmentSampled);
+        }
+        let image = |format| ImageDesc::new_2d(size[0], size[1], format);
+        let hdr = pass.create_image("hdr", image(self.hdr), Access::ColorAttachmentWrite);
+        let depth = pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite);
+        let lit = if colours.is_some() { &self.lit } else { &self.ambient };
+        let (pipeline, sky) = (lit.clone(), self.sky.clone());
+        let (scene, view, colours) = (Arc::clone(scene), *view, colours.cloned());
+        pass.record(Box::new(move |recorder, resources| {
+            let targets = [resources.view(&hdr)?, resources.view(&depth)?];
+            recorder.begin_rendering(&Rendering {
+                colors: &[ColorAttachment { view: &targets[0], load: Load::Clear([0.0, 0.0, 0.0, 1.0]) }],
+                depth: Some(DepthAttachment { view: &targets[1], load: Load::Clear(1.0), write: true }),
+            })?;
+            let view = recorder.upload(&[view])?;
+            for (instance, draw) in scene.draws.iter().enumerate() {
+                let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
+                record_draw(recorder, resources, &pipeline, draw, &view, colours)?;
+            }
+            if let Some(environment) = &scene.environment {
+                recorder.bind_graphics(
+                    &sky,
+                    &[
+                        Binding::uniform(0, &view),
+                        Binding::sampled(1, environment.map.clone()),
+                        Binding::sampler(2, &environment.sampler),
+                    ],
+                )?;
+                recorder.draw(0..3, 0..1)?;
+            }
+            recorder.end_rendering()
+        }));
+        hdr
+    }
+
+    /// Develops the HDR target into two buffers of the host's: `samples` by `samples` texels make a pixel.
+    pub fn develop(
+        &self,
+        graph: &mut Graph<Record>,
+        hdr: Handle<Image>,
+        buffers: Developed,
+        size: [u32; 2],
+        samples: u32,
+        exposure: f32,
+    ) -> Developed {
+        let mut pass = graph.pass("tone map", PassKind::Compute);
+        pass.read(&hdr, Access::ComputeSampled);
+        let linear = pass.write(buffers.linear, Access::ComputeStorageWrite);
+        let display = pass.write(buffers.display, Access::ComputeStorageWrite);
+        let pipeline = self.develop.clone();
+        pass.record(Box::new(move |recorder, resources| {
+            recorder.bind_compute(
+                &pipeline,
+                &[
+                    Binding::sampled(0, resources.view(&hdr)?),
+                    Binding::storage(1, resources.buffer(&linear)?),
+                    Binding::storage(2, resources.buffer(&display)?),
+                ],
+            )?;
+            recorder.push_constants(&DevelopConstants { size, samples, exposure })?;
+            recorder.dispatch([size[0].div_ceil(8), size[1].div_ceil(8), 1])
+        }));
+        Developed { linear, display }
+    }
+}
+
+fn record_draw(
+    recorder: &mut Recorder<'_>,
+    resources: &Resources<'_>,
+    pipeline: &GraphicsPipeline,
+    draw: &Draw,
+    view: &BufferSlice,
+    colours: Option<(&VertexColours, (u64, u64))>,
+) -> Result<(), GpuError> {
+    recorder.bind_graphics(
+        pipeline,
+        &[
+            Binding::uniform(0, view),
+            Binding::sampled(1, draw.base_colour.clone()),
+            Binding::sampler(2, &draw.sampler),
+        ],
+    )?;
+    recorder.push_constants(&draw.material)?;
+    recorder.bind_vertex_buffer(0, &draw.mesh.positions)?;
+    recorder.bind_vertex_buffer(1, &draw.mesh.texture_coordinates)?;
+    if let Some((colours, (offset, size))) = colours {
+        recorder.bind_vertex_buffer(2, resources.buffer(&colours.buffer)?.slice(offset, size)?)?;
+    }
+    recorder.bind_index_buffer(&draw.mesh.indices)?;
+    recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
+}
+
+const DRAW_BINDINGS: [BindingDesc; 3] = [
+    BindingDesc::new(0, BindingKind::UniformBuffer),
+    BindingDesc::new(1, BindingKind::SampledImage),
+    BindingDesc::new(2, BindingKind::Sampler),
+];
+
+fn scene_pipeline(context: &Context, hdr: vk::Format, relight: bool) -> Result<GraphicsPipeline, GpuError> {
+    let attribute = |location, format| VertexAttribute { location, format, offset: 0 };
+    let position = [attribute(0, vk::Format::R32G32B32_SFLOAT)];
+    let texture_coordinates = [attribute(1, vk::Format::R32G32_SFLOAT)];
+    let colour = [attribute(2, vk::Format::R32G32B32A32_SFLOAT)];
+    let layout = |stride, attributes| VertexBufferLayout { stride, rate: vk::VertexInputRate::VERTEX, attributes };
+    let buffers = [layout(12, &position[..]), layout(8, &texture_coordinates[..]), layout(16, &colour[..])];
+    context.create_graphics_pipeline(&GraphicsPipelineDesc {
+        name: if relight { "scene, relit" } else { "scene, ambient" },
+        vertex: &shaders::scene_vertex(relight),
+        fragment: Some(&shaders::scene_fragment()),
+        bindings: &DRAW_BINDINGS,
+        push_constant_size: size_of::<MaterialConstants>() as u32,
+        vertex_buffers: if relight { &buffers } else { &buffers[..2] },
+        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+        cull: vk::CullModeFlags::NONE,
+        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+        depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: true }),
+        colors: &[hdr],
+        blend: Blend::None,
+    })
+}
+
+fn sky_pipeline(context: &Context, hdr: vk::Format) -> Result<GraphicsPipeline, GpuError> {
+    context.create_graphics_pipeline(&GraphicsPipelineDesc {
+        name: "sky",
+        vertex: &shaders::sky_vertex(),
+        fragment: Some(&shaders::sky_fragment()),
+        bindings: &DRAW_BINDINGS,
+        push_constant_size: 0,
+        vertex_buffers: &[],
+        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+        cull: vk::CullModeFlags::NONE,
+        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+        depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: false }),
+        colors: &[hdr],
+        blend: Blend::None,
+    })
+}

@@ -1,0 +1,19 @@
+//! The first host: it opens its own device, then uses only what any engine would.
+//!
+//! `device` opens and adopts; `transfer` bakes on the CPU; `scene` and `upload` bring arrays to the device; `frame`
+//! declares a whole frame in one function; `draw` holds the host's own draws; `renderer` owns it all.
+//! `truth` computes on the CPU, by rays, what the pass approximates.
+
+pub mod device;
+pub mod draw;
+pub mod environment_samples;
+pub mod frame;
+pub mod holes;
+pub mod renderer;
+pub mod scene;
+pub mod shaders;
+pub mod texture;
+pub mod transfer;
+pub mod truth;
+pub mod upload;
+pub mod view;

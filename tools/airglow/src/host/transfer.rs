@@ -1,0 +1,217 @@
+//! What each instance of a scene is lit with: transfer vectors, baked once and then read from the cache.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use airglow_bake::cache::{CacheKey, Precision, Source, bake_cached};
+use airglow_bake::{LightFrame, Mesh, Occluder, Report, Settings, Threads, Transfer, unshadowed};
+use airglow_scene::{Instance, Quality, Scene, Shadow};
+use glam::{DQuat, Mat4};
+use serde::Serialize;
+
+use super::holes;
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+
+/// The transfer of a whole scene.
+#[derive(Debug)]
+pub struct SceneTransfer {
+    /// Different transfers; instances of one mesh may share one.
+    pub transfers: Vec<Transfer>,
+    /// For each instance of the scene.
+    pub instances: Vec<InstanceTransfer>,
+    /// How each transfer came to be.
+    pub accounts: Vec<Account>,
+}
+
+/// Which transfer lights an instance.
+#[derive(Clone, Copy, Debug)]
+pub struct InstanceTransfer {
+    /// Index into [`SceneTransfer::transfers`].
+    pub transfer: usize,
+    /// World from the space the transfer is in: the identity for a bake in world space.
+    pub rotation: DQuat,
+}
+
+/// What a bake took.
+#[derive(Clone, Debug, Serialize)]
+pub struct Account {
+    /// Mesh, or mesh and instance.
+    pub name: String,
+    /// Vertices baked.
+    pub vertices: usize,
+    /// Triangles that cast shadows on it.
+    pub occluders: usize,
+    /// `cache`, `baked` with the reason, or `closed form`.
+    pub source: String,
+    /// Rays traced in this run.
+    pub rays: u64,
+    /// Rays a second, all threads; 0 if none were traced.
+    pub rays_per_second: f64,
+    /// The cache file, if there is one.
+    pub file: Option<PathBuf>,
+}
+
+/// One bake to make: a mesh in some space, and what blocks its rays there.
+struct Job<'a> {
+    name: String,
+    mesh: Mesh<'a>,
+    transform: Mat4,
+    occluders: Vec<Occluder<'a>>,
+}
+
+/// Bakes what `quality` asks for, or reads it from `cache`.
+pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output) -> Outcome<SceneTransfer> {
+    let holes = holes::of_scene(scene);
+    let (jobs, instances) = jobs(scene, quality.shadow, &holes);
+    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new() };
+    for job in &jobs {
+        let (transfer, account) = bake(job, quality, cache, output)?;
+        result.transfers.push(transfer);
+        result.accounts.push(account);
+    }
+    Ok(result)
+}
+
+/// One job for each mesh that its instances can share in object space, and one for each other instance.
+fn jobs<'a>(
+    scene: &'a Scene,
+    shadow: Shadow,
+    holes: &'a [Option<holes::Holes<'a>>],
+) -> (Vec<Job<'a>>, Vec<InstanceTransfer>) {
+    let mut jobs: Vec<Job<'a>> = Vec::new();
+    let mut shared: Vec<Option<usize>> = vec![None; scene.meshes.len()];
+    let mut instances = Vec::with_capacity(scene.instances.len());
+    for (number, instance) in scene.instances.iter().enumerate() {
+        let rotation = if shadow == Shadow::Scene { None } else { shared_rotation(instance) };
+        let transfer = match (rotation, shared[instance.mesh]) {
+            (Some(_), Some(job)) => job,
+            (Some(_), None) => {
+                jobs.push(object_job(scene, number, shadow, holes));
+                shared[instance.mesh] = Some(jobs.len() - 1);
+                jobs.len() - 1
+            }
+            (None, _) => {
+                jobs.push(world_job(scene, number, shadow, holes));
+                jobs.len() - 1
+            }
+        };
+        instances.push(InstanceTransfer { transfer, rotation: rotation.unwrap_or(DQuat::IDENTITY) });
+    }
+    (jobs, instances)
+}
+
+/// World from object, where that is a rotation and a uniform scale; a mirrored or stretched instance is baked in
+/// world space instead.
+fn shared_rotation(instance: &Instance) -> Option<DQuat> {
+    let frame = LightFrame::of_instance(instance.transform).ok()?;
+    (!frame.inverted).then(|| frame.world_to_object.conjugate())
+}
+
+/// The mesh of an instance as the bake takes it.
+pub fn bake_mesh(scene: &Scene, instance: usize) -> Mesh<'_> {
+    let mesh = &scene.meshes[scene.instances[instance].mesh];
+    Mesh { name: &mesh.name, positions: &mesh.positions, normals: &mesh.normals, indices: &mesh.indices }
+}
+
+/// An instance as something that casts shadows, placed by `transform`.
+pub fn occluder<'a>(
+    scene: &'a Scene,
+    instance: usize,
+    transform: Mat4,
+    holes: &'a [Option<holes::Holes<'a>>],
+) -> Occluder<'a> {
+    let mask = holes[instance].as_ref().map(holes::Holes::mask);
+    Occluder { mask, ..bake_mesh(scene, instance).occluder_at(transform) }
+}
+
+fn object_job<'a>(
+    scene: &'a Scene,
+    instance: usize,
+    shadow: Shadow,
+    holes: &'a [Option<holes::Holes<'a>>],
+) -> Job<'a> {
+    let mesh = bake_mesh(scene, instance);
+    let occluders = match shadow {
+        Shadow::Unshadowed => Vec::new(),
+        Shadow::Object | Shadow::Scene => vec![occluder(scene, instance, Mat4::IDENTITY, holes)],
+    };
+    Job { name: mesh.name.to_owned(), mesh, transform: Mat4::IDENTITY, occluders }
+}
+
+fn world_job<'a>(
+    scene: &'a Scene,
+    instance: usize,
+    shadow: Shadow,
+    holes: &'a [Option<holes::Holes<'a>>],
+) -> Job<'a> {
+    let placed = |number: usize| occluder(scene, number, scene.instances[number].transform, holes);
+    let occluders = match shadow {
+        Shadow::Unshadowed => Vec::new(),
+        Shadow::Object => vec![placed(instance)],
+        Shadow::Scene => (0..scene.instances.len()).map(placed).collect(),
+    };
+    let mesh = bake_mesh(scene, instance);
+    let (mesh_name, instance_name) = (mesh.name, &scene.instances[instance].name);
+    let name = if mesh_name == instance_name {
+        mesh_name.to_owned()
+    } else {
+        format!("{mesh_name} at {instance_name}")
+    };
+    Job { name, mesh, transform: scene.instances[instance].transform, occluders }
+}
+
+fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outcome<(Transfer, Account)> {
+    let vertices = job.mesh.positions.len();
+    let mut account = Account {
+        name: job.name.clone(),
+        vertices,
+        occluders: job.occluders.iter().map(|occluder| occluder.indices.len() / 3).sum(),
+        source: "closed form".to_owned(),
+        rays: 0,
+        rays_per_second: 0.0,
+        file: None,
+    };
+    let order = quality.order as usize;
+    if quality.shadow == Shadow::Unshadowed {
+        let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
+        return Ok((baked.transfer, account));
+    }
+    let settings = Settings { order, rays: quality.rays, ..Settings::default() };
+    let key = CacheKey::new(&job.mesh, job.transform, &job.occluders, &settings).to_hex();
+    std::fs::create_dir_all(cache).map_err(|error| Failure::file(cache, "making the cache folder", error))?;
+    let file = cache.join(format!("{}-{}.safetensors", file_name(&job.name), &key[..16]));
+    let bar = output.progress(&job.name, vertices as u64, "vertices");
+    let mut progress = |report: &Report| {
+        bar.set_position(report.vertices as u64);
+        ControlFlow::Continue(())
+    };
+    let threads = Threads::new(std::thread::available_parallelism().map_or(1, usize::from));
+    let (transfer, source) = bake_cached(
+        &file,
+        Precision::F32,
+        &job.mesh,
+        job.transform,
+        &job.occluders,
+        &settings,
+        &threads,
+        &mut progress,
+    )
+    .map_err(Failure::work)?;
+    bar.finish_and_clear();
+    account.source = match &source {
+        Source::Cache => "cache".to_owned(),
+        Source::Baked { stats, miss } => {
+            account.rays = stats.rays;
+            account.rays_per_second = stats.rays_per_second();
+            format!("baked ({miss})")
+        }
+    };
+    account.file = Some(file);
+    Ok((transfer, account))
+}
+
+/// The name with everything but letters and digits replaced, and not too long.
+fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(48).collect()
+}

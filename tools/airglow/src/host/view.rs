@@ -1,0 +1,62 @@
+//! What the draws of one view share.
+
+use airglow_scene::{Camera, FloatImage};
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Quat, Vec3};
+
+/// `Frame` of `host/frame.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct ViewConstants {
+    clip_from_world: [[f32; 4]; 4],
+    direction_from_clip: [[f32; 4]; 4],
+    map_from_world: [[f32; 4]; 4],
+    ambient: [f32; 4],
+}
+
+impl ViewConstants {
+    /// A camera's view in a picture of the given aspect; `rotation` is world from environment map, `ambient` the
+    /// radiance of a white surface where no pass lights it.
+    pub fn new(camera: &Camera, aspect: f32, rotation: Quat, ambient: [f32; 3]) -> Self {
+        let (clip_from_view, view) = (camera.clip_from_view(aspect), camera.view());
+        let without_translation = Mat4::from_mat3(glam::Mat3::from_mat4(view));
+        Self {
+            clip_from_world: (clip_from_view * view).to_cols_array_2d(),
+            direction_from_clip: (clip_from_view * without_translation).inverse().to_cols_array_2d(),
+            map_from_world: Mat4::from_quat(rotation.inverse()).to_cols_array_2d(),
+            ambient: Vec3::from(ambient).extend(0.0).to_array(),
+        }
+    }
+}
+
+
+/// `aspect` of a picture.
+pub fn aspect(size: [u32; 2]) -> f32 {
+    size[0] as f32 / size[1].max(1) as f32
+}
+
+/// The picture of `rgb` triples.
+pub fn picture(size: [u32; 2], values: &[f32]) -> FloatImage {
+    let pixels = values.as_chunks::<3>().0.to_vec();
+    FloatImage { width: size[0] as usize, height: size[1] as usize, pixels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airglow_scene::{Projection, Sphere};
+
+    #[test]
+    fn the_middle_of_the_picture_looks_where_the_camera_looks() {
+        let mut camera = Camera::framing(Sphere { center: [1.0, 2.0, 3.0], radius: 1.5 });
+        for infinite in [false, true] {
+            if let (Projection::Perspective { far, .. }, true) = (&mut camera.projection, infinite) {
+                *far = None;
+            }
+            let view = ViewConstants::new(&camera, 1.5, Quat::IDENTITY, [0.0; 3]);
+            let near = Mat4::from_cols_array_2d(&view.direction_from_clip) * glam::Vec4::new(0.0, 0.0, 0.0, 1.0);
+            let direction = (near.truncate() / near.w).normalize();
+            assert!((direction - camera.direction()).length() < 1e-4, "{direction} {}", camera.direction());
+        }
+    }
+}
