@@ -85,18 +85,19 @@ run() {
     cat "$output" >> "$full"
     {
         echo "\$ $1"
-        without_addresses < "$output" | head -n 20
-        echo "[...]"
-        without_addresses < "$output" | tail -n 40
+        essence < "$output" | awk '{line[NR] = $0} END {for (i = 1; i <= NR; i++) {
+            if (i <= 20 || i > NR - 40) print line[i]; else if (i == 21) print "[...]"}}'
         printf 'exit status %d after %d s\n\n' "$status" $((SECONDS - start))
     } >> "$log.partial"
     rm -f "$output"
     return "$status"
 }
 
-# Terminal colours, downloads and the addresses of mirrors say nothing about the project.
-without_addresses() {
-    sed -E 's/\x1b\[[0-9;]*m//g' | grep -vE '://|^ *(Get|Hit|Ign):|^ *(Updating|Downloading|Downloaded|Compiling|Locking) '
+# Without terminal colours, and the progress of downloads, packages and compilers.
+essence() {
+    sed -E 's/\x1b\[[0-9;]*m//g' |
+        grep -vE '://|^ *(Get|Hit|Ign):|^ *(Updating|Downloading|Downloaded|Compiling|Checking|Documenting|Locking) ' |
+        grep -vE '^(Selecting previously|Preparing to unpack|Unpacking|Setting up|Processing triggers|\(Reading database)'
 }
 
 install_packages debootstrap
