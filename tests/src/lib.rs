@@ -1,4 +1,10 @@
 //! Test support shared by the rooms: device fixture, comparison, golden files, data; and contract tests across rooms.
+#![expect(clippy::panic, reason = "helpers of tests fail the test they are called from")]
 
+pub mod compare;
+pub mod data;
+pub mod device;
+pub mod golden;
 /// Reflection of committed shaders.
 pub mod reflect;
+pub mod spirv;

@@ -5,7 +5,7 @@ use crate::shared::lock;
 use ash::vk;
 use std::ffi::{CStr, c_char, c_void};
 use std::fmt;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// A warning or error of the validation layers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,18 +24,29 @@ impl fmt::Display for Message {
     }
 }
 
-/// A debug messenger and what it heard.
+/// The messages heard so far. Clones share them, and may outlive the device: what its destruction says is heard too.
+#[derive(Clone, Debug, Default)]
+pub struct MessageLog(Arc<Mutex<Vec<Message>>>);
+
+impl MessageLog {
+    /// The messages since the last call.
+    pub fn take(&self) -> Vec<Message> {
+        std::mem::take(&mut *lock(&self.0))
+    }
+}
+
+/// A debug messenger.
 pub(super) struct Messenger {
     functions: ash::ext::debug_utils::Instance,
     raw: vk::DebugUtilsMessengerEXT,
-    /// Boxed: the layers hold its address.
-    heard: Box<Mutex<Vec<Message>>>,
+    /// The layers hold its address.
+    pub log: MessageLog,
 }
 
 impl Messenger {
     pub(super) fn new(entry: &ash::Entry, instance: &ash::Instance) -> Result<Self, GpuError> {
         let functions = ash::ext::debug_utils::Instance::new(entry, instance);
-        let heard = Box::new(Mutex::new(Vec::new()));
+        let log = MessageLog::default();
         let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(
                 vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
@@ -46,15 +57,11 @@ impl Messenger {
                     | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
             )
             .pfn_user_callback(Some(hear))
-            .user_data((&raw const *heard).cast_mut().cast());
+            .user_data(Arc::as_ptr(&log.0).cast_mut().cast());
         // SAFETY: the extension is enabled whenever validation is; the list outlives the messenger.
         let raw = unsafe { functions.create_debug_utils_messenger(&info, None) }
             .map_err(GpuError::vulkan("vkCreateDebugUtilsMessengerEXT"))?;
-        Ok(Self { functions, raw, heard })
-    }
-
-    pub(super) fn take(&self) -> Vec<Message> {
-        std::mem::take(&mut *lock(&self.heard))
+        Ok(Self { functions, raw, log })
     }
 }
 

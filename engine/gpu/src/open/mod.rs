@@ -8,7 +8,7 @@ mod messages;
 mod select;
 mod submit;
 
-pub use messages::Message;
+pub use messages::{Message, MessageLog};
 pub use select::{DeviceKind, DeviceLine, Selector};
 pub use submit::{FrameLoop, FrameSemaphores};
 
@@ -18,7 +18,6 @@ use crate::feature::{FeatureSet, FeatureStructs};
 use crate::requirements::Requirements;
 use ash::vk;
 use instance::Instance;
-use messages::Messenger;
 use std::ffi::CStr;
 
 /// How a device is opened.
@@ -157,9 +156,9 @@ impl OpenDevice {
         &self.line
     }
 
-    /// Messages of the validation layers since the last call, warnings and errors. Empty without validation.
-    pub fn take_messages(&self) -> Vec<Message> {
-        self.instance.messenger.as_ref().map(Messenger::take).unwrap_or_default()
+    /// Warnings and errors of the validation layers; empty without validation.
+    pub fn messages(&self) -> MessageLog {
+        self.instance.messenger.as_ref().map(|messenger| messenger.log.clone()).unwrap_or_default()
     }
 
     /// ash's instance.

@@ -1,0 +1,8 @@
+// Passes the colour on.
+#version 460
+layout(location = 0) flat in vec4 shaded;
+layout(location = 0) out vec4 colour;
+
+void main() {
+    colour = shaded;
+}
