@@ -34,9 +34,11 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod bench;
 mod control;
 mod declare;
 mod error;
+pub mod eval;
 mod frame;
 pub mod kernels;
 mod mesh;
@@ -52,6 +54,7 @@ mod stage;
 mod tables;
 mod vertices;
 
+pub use bench::{Bench, Case, CaseLight, Run, Texels};
 pub use control::Rotations;
 pub use declare::GraphFrame;
 pub use error::RelightError;

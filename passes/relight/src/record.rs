@@ -19,7 +19,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    fn buffer(&self, resource: Resource) -> Result<&BufferSlice, GpuError> {
+    pub(crate) fn buffer(&self, resource: Resource) -> Result<&BufferSlice, GpuError> {
         self.buffers.get(&resource).ok_or_else(|| missing(resource))
     }
 

@@ -70,20 +70,14 @@ pub fn check_environment(
         let (name, what, actual) = (name.to_owned(), "texels", texels.len());
         return Err(RelightError::Length { name, what, expected, actual });
     }
-    let checks: [(&'static str, fn(f32) -> bool); 2] =
-        [("NaN or infinite", |c| !c.is_finite()), ("negative", |c| c < 0.0)];
-    for (problem, wrong) in checks {
-        if let Some((count, first)) = count_wrong(texels, |texel| texel.into_iter().any(wrong)) {
-            return Err(RelightError::Values {
-                name: name.to_owned(),
-                what: "texels",
-                problem,
-                count,
-                first,
-            });
-        }
-    }
-    Ok(())
+    let not_finite = count_wrong(texels, |texel| texel.into_iter().any(|c| !c.is_finite()));
+    let negative = count_wrong(texels, |texel| texel.into_iter().any(|c| c < 0.0));
+    let (problem, (count, first)) = match (not_finite, negative) {
+        (Some(found), _) => ("NaN or infinite", found),
+        (None, Some(found)) => ("negative", found),
+        (None, None) => return Ok(()),
+    };
+    Err(RelightError::Values { name: name.to_owned(), what: "texels", problem, count, first })
 }
 
 #[cfg(test)]
