@@ -56,7 +56,7 @@ pub enum Access {
     DepthAttachmentWrite,
     /// Depth attachment, loaded, tested and written.
     DepthAttachmentReadWrite,
-    /// Depth attachment, tested only.
+    /// Depth attachment, tested only; its store operation must be `NONE`, because a store is a write.
     DepthAttachmentRead,
     /// Source of a copy, blit or resolve.
     TransferSource,
@@ -267,5 +267,26 @@ impl State {
 impl From<Access> for State {
     fn from(access: Access) -> Self {
         Self::of(access)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_agrees_with_itself() {
+        for access in Access::ALL {
+            let name = format!("{access:?}");
+            let writes = name.contains("Write") || access == Access::TransferDestination;
+            assert_eq!(access.writes(), writes, "{name}");
+            let keeps = name.contains("ReadWrite") || (!writes && access != Access::Present);
+            assert_eq!(access.keeps_contents(), keeps, "{name}");
+            let for_image = !access.image_usage().is_empty();
+            assert!(!for_image || access.layout() != L::UNDEFINED, "{name} of an image needs a layout");
+        }
+        let mut each: Vec<Access> = Access::ALL.to_vec();
+        each.dedup();
+        assert_eq!(each.len(), Access::ALL.len());
     }
 }

@@ -75,3 +75,50 @@ fn reason(declaration: &Declaration, history: &History, pass: usize) -> CullReas
         CullReason::ReadOnlyByCulled { resources, readers }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::validate::validate;
+    use crate::{Access, BufferDesc, Graph, GraphError, ImageDesc, Limits, PassKind};
+
+    fn run(graph: &mut Graph<()>) -> Result<Cull, GraphError> {
+        validate(&mut graph.declaration, &Limits::default())?;
+        Ok(cull(&graph.declaration, &History::of(&graph.declaration)))
+    }
+
+    #[test]
+    fn what_reaches_nothing_is_culled_and_says_why() {
+        let mut graph = Graph::new();
+        let (write, read) = (Access::ComputeStorageWrite, Access::ComputeStorageRead);
+        let desc = BufferDesc::new(4);
+        let a = graph.pass("kept", PassKind::Compute).create_buffer("a", desc, write);
+        let b = graph.pass("first", PassKind::Compute).create_buffer("b", desc, write);
+        let mut second = graph.pass("second", PassKind::Compute);
+        second.read(&b, read);
+        second.create_buffer("c", desc, write);
+        graph.pass("idle", PassKind::Compute).read(&a, read);
+        graph.pass("watcher", PassKind::Compute).side_effect();
+        graph.export(a, Access::VertexBuffer);
+        let cull = run(&mut graph).unwrap();
+        assert_eq!(cull.alive, [true, false, false, false, true]);
+        let (resources, readers) = (vec!["b".into()], vec!["second".into()]);
+        let reasons: Vec<_> = cull.culled.into_iter().map(|culled| culled.reason).collect();
+        let unread = CullReason::Unread { resources: vec!["c".into()] };
+        let expected =
+            [CullReason::ReadOnlyByCulled { resources, readers }, unread, CullReason::WritesNothing];
+        assert_eq!(reasons, expected);
+    }
+
+    #[test]
+    fn only_writers_of_the_mips_wanted_are_kept() {
+        let mut graph = Graph::new();
+        let desc = ImageDesc { mips: 2, ..ImageDesc::new_2d(2, 2, ash::vk::Format::R32_SFLOAT) };
+        let image = graph.create_image("i", desc);
+        let write = Access::ComputeStorageWrite;
+        let image = graph.pass("mip 0", PassKind::Compute).write(image.mip(0), write);
+        let image = graph.pass("mip 1", PassKind::Compute).write(image.mip(1), write);
+        graph.export(image.mip(0), Access::FragmentSampled);
+        assert_eq!(run(&mut graph).unwrap().alive, [true, false]);
+    }
+}

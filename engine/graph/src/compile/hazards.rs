@@ -112,3 +112,59 @@ fn check_exports(declaration: &Declaration, history: &History) -> Result<(), Gra
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::validate::validate;
+    use crate::{Access, Buffer, BufferDesc, Graph, Handle, Limits, PassKind};
+
+    const WRITE: Access = Access::ComputeStorageWrite;
+
+    fn run(graph: &mut Graph<()>) -> Result<(), GraphError> {
+        validate(&mut graph.declaration, &Limits::default())?;
+        hazards(&graph.declaration, &History::of(&graph.declaration))
+    }
+
+    fn write(graph: &mut Graph<()>, pass: &str, handle: Handle<Buffer>) -> Handle<Buffer> {
+        graph.pass(pass, PassKind::Compute).write(handle, WRITE)
+    }
+
+    #[test]
+    fn two_writers_and_old_versions_are_told_apart() {
+        let mut graph = Graph::new();
+        let buffer = graph.create_buffer("b", BufferDesc::new(4));
+        let next = write(&mut graph, "one", buffer);
+        assert_eq!(run(&mut graph), Ok(()));
+        let mut two = graph.clone();
+        write(&mut two, "two", buffer);
+        let (resource, first, second) = ("b".into(), "one".into(), "two".into());
+        assert_eq!(run(&mut two), Err(GraphError::TwoWriters { resource, version: 0, first, second }));
+        write(&mut graph, "two", next);
+        write(&mut graph, "three", buffer);
+        let (resource, pass, newest_writer) = ("b".into(), "three".into(), "two".into());
+        let expected = GraphError::WriteToOldVersion { resource, version: 0, pass, newest: 2, newest_writer };
+        assert_eq!(run(&mut graph), Err(expected));
+    }
+
+    #[test]
+    fn reading_what_nobody_wrote_is_an_error() {
+        let mut graph = Graph::new();
+        let buffer = graph.create_buffer("b", BufferDesc::new(4));
+        graph.pass("reader", PassKind::Compute).read(&buffer, Access::ComputeStorageRead);
+        let message = run(&mut graph).unwrap_err().to_string();
+        assert!(message.contains("`reader` reads `b`") && message.contains("earlier pass"), "{message}");
+    }
+
+    #[test]
+    fn overwriting_what_was_exported_is_an_error() {
+        let mut graph = Graph::new();
+        let buffer = graph.create_buffer("b", BufferDesc::new(4));
+        let first = write(&mut graph, "one", buffer);
+        graph.export(first, Access::VertexBuffer);
+        assert_eq!(run(&mut graph), Ok(()));
+        write(&mut graph, "two", first);
+        let message = run(&mut graph).unwrap_err().to_string();
+        assert!(message.contains("`two` writes `b`") && message.contains("by `one`"), "{message}");
+    }
+}

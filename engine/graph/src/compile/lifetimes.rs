@@ -28,3 +28,22 @@ pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanR
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Access, BufferDesc, Graph, PassKind};
+
+    #[test]
+    fn a_lifetime_spans_first_to_last_step_and_skips_what_is_not_ordered() {
+        let mut graph = Graph::<()>::new();
+        let desc = BufferDesc::new(4);
+        let a = graph.pass("0", PassKind::Compute).create_buffer("a", desc, Access::ComputeStorageWrite);
+        graph.pass("1", PassKind::Compute).create_buffer("b", desc, Access::ComputeStorageWrite);
+        graph.pass("2", PassKind::Compute);
+        graph.pass("3", PassKind::Compute).read(&a, Access::ComputeStorageRead);
+        let resources = lifetimes(&graph.declaration, &[0, 2, 3]);
+        assert_eq!(resources[0].lifetime, Some(Lifetime { first: 0, last: 2 }));
+        assert_eq!(resources[1].lifetime, None);
+    }
+}

@@ -4,6 +4,8 @@
 //! Hazards come before order: order relies on each resource's versions being one chain, which is what the
 //! hazards phase proves.
 
+#[cfg(test)]
+mod barrier_tests;
 mod barriers;
 mod coalesce;
 mod cull;

@@ -116,3 +116,41 @@ fn leads_to(successors: &Successors, from: usize, to: usize) -> bool {
     }
     false
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::validate::validate;
+    use crate::{Access, BufferDesc, Graph, Limits, PassKind};
+
+    fn run(graph: &mut Graph<()>) -> Result<Vec<usize>, GraphError> {
+        validate(&mut graph.declaration, &Limits::default())?;
+        order(&graph.declaration, &History::of(&graph.declaration))
+    }
+
+    #[test]
+    fn a_late_reader_of_an_old_version_goes_before_its_overwriting_and_the_rest_stay() {
+        let mut graph = Graph::new();
+        let buffer = graph.create_buffer("b", BufferDesc::new(4));
+        let old = graph.pass("0", PassKind::Compute).write(buffer, Access::ComputeStorageWrite);
+        graph.pass("1", PassKind::Compute);
+        graph.pass("2", PassKind::Compute).write(old, Access::ComputeStorageWrite);
+        graph.pass("3", PassKind::Compute);
+        graph.pass("4", PassKind::Compute).read(&old, Access::ComputeStorageRead);
+        assert_eq!(run(&mut graph), Ok(vec![0, 1, 3, 4, 2]));
+    }
+
+    #[test]
+    fn a_reader_of_both_versions_in_turn_is_a_cycle() {
+        let mut graph = Graph::new();
+        let [a, b] = ["a", "b"].map(|name| graph.create_buffer(name, BufferDesc::new(4)));
+        let old = graph.pass("first", PassKind::Compute).write(a, Access::ComputeStorageWrite);
+        let mut second = graph.pass("second", PassKind::Compute);
+        second.write(old, Access::ComputeStorageWrite);
+        let b = second.write(b, Access::ComputeStorageWrite);
+        let mut third = graph.pass("third", PassKind::Compute);
+        third.read(&old, Access::ComputeStorageRead).read(&b, Access::ComputeStorageRead);
+        let (resource, reader, writer) = ("a".into(), "third".into(), "second".into());
+        assert_eq!(run(&mut graph), Err(GraphError::Cycle { resource, version: 1, reader, writer }));
+    }
+}

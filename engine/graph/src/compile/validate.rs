@@ -259,3 +259,88 @@ fn check_pair(first: &Use, second: &Use) -> Checked {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Graph;
+    use crate::pass::PassBuilder;
+
+    /// The message about a pass of one kind that uses a fresh buffer and a fresh image somehow.
+    fn message(kind: PassKind, declare: impl FnOnce(&mut PassBuilder<'_, ()>)) -> String {
+        let mut graph = Graph::new();
+        let mut pass = graph.pass("p", kind);
+        declare(&mut pass);
+        pass.record(());
+        validate(&mut graph.declaration, &Limits::default()).map_err(|e| e.to_string()).unwrap_err()
+    }
+
+    fn image() -> ImageDesc {
+        ImageDesc { mips: 3, ..ImageDesc::new_2d(4, 4, vk::Format::R32_SFLOAT) }
+    }
+
+    /// The same for one write of a fresh buffer.
+    fn buffer_message(kind: PassKind, size: u64, access: Access) -> String {
+        message(kind, |pass| {
+            pass.create_buffer("b", BufferDesc::new(size), access);
+        })
+    }
+
+    /// The same for one write of a fresh image.
+    fn image_message(kind: PassKind, access: Access) -> String {
+        message(kind, |pass| {
+            pass.create_image("i", image(), access);
+        })
+    }
+
+    #[test]
+    fn uses_that_make_no_sense_are_named_with_their_mend() {
+        use PassKind::{Compute, Graphics};
+        let cases = [
+            (buffer_message(Compute, 4, Access::ComputeStorageRead), "`read`"),
+            (buffer_message(Compute, 0, Access::ComputeStorageWrite), "0 bytes"),
+            (buffer_message(Compute, 8, Access::HostWrite), "cannot use"),
+            (image_message(Compute, Access::ColorAttachmentWrite), "no such stage"),
+            (image_message(Graphics, Access::DepthAttachmentWrite), "R32_SFLOAT"),
+        ];
+        for (message, expected) in cases {
+            assert!(message.contains(expected), "expected `{expected}` in: {message}");
+        }
+    }
+
+    #[test]
+    fn two_uses_of_one_part_by_one_pass_are_refused() {
+        let message = message(PassKind::Compute, |pass| {
+            let image = pass.create_image("i", image(), Access::ComputeStorageWrite);
+            pass.read(&image.mip(1), Access::ComputeSampled);
+        });
+        assert!(message.contains("overlap"), "{message}");
+    }
+
+    #[test]
+    fn ranges_are_resolved_and_checked() {
+        let missing = message(PassKind::Compute, |pass| {
+            let image = pass.create_image("i", image(), Access::ComputeStorageWrite);
+            pass.read(&image.mip(3), Access::ComputeSampled);
+        });
+        assert!(missing.contains("not within the 3 mips"), "{missing}");
+        let part = ImageRange { base_mip: 1, mips: ImageRange::REMAINING, base_layer: 0, layers: 1 };
+        assert_eq!(part.resolve(3, 1).map(|range| range.mips), Some(2));
+        assert_eq!(part.resolve(1, 1), None);
+    }
+
+    #[test]
+    fn imports_need_their_usage_and_transients_get_it() {
+        let mut graph = Graph::<()>::new();
+        let made = graph.create_buffer("made", BufferDesc::new(4));
+        graph.pass("p", PassKind::Compute).write(made, Access::ComputeStorageWrite);
+        assert_eq!(validate(&mut graph.declaration, &Limits::default()), Ok(()));
+        let ResourceDesc::Buffer(desc) = graph.declaration.resources[0].desc else { panic!("a buffer") };
+        assert_eq!(desc.usage, vk::BufferUsageFlags::STORAGE_BUFFER);
+
+        let hosts = graph.import_buffer("host's", BufferDesc::new(4), Access::HostWrite, Access::HostRead);
+        graph.pass("q", PassKind::Compute).write(hosts, Access::ComputeStorageWrite);
+        let message = validate(&mut graph.declaration, &Limits::default()).unwrap_err().to_string();
+        assert!(message.contains("STORAGE_BUFFER"), "{message}");
+    }
+}

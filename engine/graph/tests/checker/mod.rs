@@ -33,9 +33,27 @@ impl Trace {
         }
     }
 
-    pub fn batches(&mut self) -> impl Iterator<Item = &mut Barriers> {
+    fn batches(&mut self) -> impl Iterator<Item = &mut Barriers> {
         let steps = self.steps.iter_mut().map(|step| &mut step.0);
         [&mut self.acquires].into_iter().chain(steps).chain([&mut self.exits, &mut self.releases])
+    }
+
+    /// For each barrier, the same trace without it.
+    pub fn without_one_barrier(&self) -> Vec<Self> {
+        let counts = self.clone().batches().map(|b| (b.buffers.len(), b.images.len())).collect::<Vec<_>>();
+        let mut mutants = Vec::new();
+        for (batch, (buffers, images)) in counts.into_iter().enumerate() {
+            for i in 0..buffers + images {
+                let mut mutant = self.clone();
+                match mutant.batches().nth(batch) {
+                    Some(barriers) if i < buffers => _ = barriers.buffers.remove(i),
+                    Some(barriers) => _ = barriers.images.remove(i - buffers),
+                    None => continue,
+                }
+                mutants.push(mutant);
+            }
+        }
+        mutants
     }
 
     /// The first thing wrong, or `Ok`.
@@ -250,12 +268,11 @@ impl<'a> Subresource<'a> {
                 return Err(format!("the transition after {:?} races with {}", b.after, e.who));
             }
         }
-        if self.is_image && b.old_layout != self.layout {
-            if b.old_layout != ImageLayout::UNDEFINED {
-                return Err(format!("a barrier from {:?} where it is in {:?}", b.old_layout, self.layout));
-            }
+        let discards = b.old_layout == ImageLayout::UNDEFINED;
+        if self.is_image && b.old_layout != self.layout && !discards {
+            return Err(format!("a barrier from {:?} where it is in {:?}", b.old_layout, self.layout));
         }
-        if self.is_image && b.old_layout == ImageLayout::UNDEFINED {
+        if self.is_image && discards {
             self.contents = None;
         }
         if transfers {
