@@ -63,14 +63,22 @@ pub use warning::Warning;
 /// [`SceneError`] if a file is missing, broken, too large or asks for something that cannot be left out.
 pub fn load(file: &Path) -> Result<Scene, SceneError> {
     let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    match extension.to_ascii_lowercase().as_str() {
-        "toml" => scene_file::load(file),
-        "glb" | "gltf" => gltf_file::load(file),
-        other => Err(error::unsupported(
-            file,
-            "file",
-            format!("the file name extension {other:?}"),
-            "name a .toml scene file, a .glb or a .gltf file",
-        )),
+    let scene = match extension.to_ascii_lowercase().as_str() {
+        "toml" => scene_file::load(file)?,
+        "glb" | "gltf" => gltf_file::load(file)?,
+        other => {
+            let feature = format!("the file name extension {other:?}");
+            let mend = "name a .toml scene file, a .glb or a .gltf file";
+            return Err(error::unsupported(file, "file", feature, mend));
+        }
+    };
+    match scene.find_far_instance() {
+        Some(instance) => {
+            let item = format!("instance {:?}", instance.name);
+            let problem =
+                format!("a vertex lies farther than {:e} m from the origin", limits::MAX_COORDINATE);
+            Err(error::invalid(file, item, problem, "scale the scene down"))
+        }
+        None => Ok(scene),
     }
 }

@@ -26,3 +26,6 @@ pub const MAX_INSTANCES: u64 = 1 << 20;
 
 /// Deepest chain of nodes in a glTF file.
 pub const MAX_NODE_DEPTH: usize = 1024;
+
+/// Largest coordinate of a placed vertex, metres; squares of distances then stay far inside the range of f32.
+pub const MAX_COORDINATE: f32 = 1e12;

@@ -7,6 +7,7 @@ use crate::camera::{Camera, Sphere};
 use crate::environment::Environment;
 use crate::image::Image;
 use crate::light::{Blocker, Emitter, Light, Medium};
+use crate::limits::MAX_COORDINATE;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::settings::{Exposure, Quality};
@@ -19,7 +20,8 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Meshes placed in the world.
     pub instances: Vec<Instance>,
-    /// Surfaces. The last one is [`Material::default`] if a primitive had none.
+    /// Surfaces: those of the files, [`Material::default`] for primitives that name none, and those that a scene
+    /// file states.
     pub materials: Vec<Material>,
     /// Decoded textures; an image used both as colour and as data stands here twice.
     pub images: Vec<Image>,
@@ -122,10 +124,20 @@ impl Scene {
         Some((low.into(), high.into()))
     }
 
-    fn world_positions(&self) -> impl Iterator<Item = Vec3> {
-        self.instances.iter().flat_map(|instance| {
-            let positions = self.meshes.get(instance.mesh).map_or(&[][..], |mesh| &mesh.positions);
-            positions.iter().map(|position| instance.transform.transform_point3(Vec3::from(*position)))
+    /// The first instance with a vertex that is not within [`MAX_COORDINATE`] of the origin along each axis.
+    pub(crate) fn find_far_instance(&self) -> Option<&Instance> {
+        self.instances.iter().find(|instance| {
+            let near = |position: Vec3| position.to_array().iter().all(|x| x.abs() <= MAX_COORDINATE);
+            self.positions_of(instance).any(|position| !near(position))
         })
+    }
+
+    fn world_positions(&self) -> impl Iterator<Item = Vec3> {
+        self.instances.iter().flat_map(|instance| self.positions_of(instance))
+    }
+
+    fn positions_of<'a>(&'a self, instance: &'a Instance) -> impl Iterator<Item = Vec3> + 'a {
+        let positions = self.meshes.get(instance.mesh).map_or(&[][..], |mesh| &mesh.positions);
+        positions.iter().map(|position| instance.transform.transform_point3(Vec3::from(*position)))
     }
 }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use airglow_scene::{LightKind, MaterialClass, image_io, load, luminance};
+use airglow_scene::{LightKind, MaterialClass, Quality, image_io, load, luminance};
 use support::asset;
 
 #[test]
@@ -67,4 +67,21 @@ fn environments_have_the_stated_peaks() {
         let found = map.pixels.iter().map(|pixel| luminance(*pixel)).fold(0.0, f32::max);
         assert!((found / peak - 1.0).abs() < 2e-3, "{name}: peak of {found}, stated {peak}");
     }
+}
+
+#[test]
+fn the_scene_file_of_the_readme_loads() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let (_, rest) = readme.split_once("```toml\n").unwrap();
+    let (text, _) = rest.split_once("```").unwrap();
+    let text = text.replace("\"../", &format!("\"{}/", asset("").display()));
+    let folder = tempfile::tempdir().unwrap();
+    let scene = load(&support::put(&folder, "scene.toml", text.as_bytes())).unwrap();
+    assert_eq!((scene.warnings.as_slice(), scene.quality), ([].as_slice(), Quality::default()));
+    assert!(scene.environment.is_some() && scene.medium.is_some());
+    assert_eq!((scene.emitters.len(), scene.blockers.len(), scene.cameras.len()), (1, 1, 1));
+    let spot = scene.instances.last().unwrap();
+    assert_eq!(scene.meshes[spot.mesh].name, "spot");
+    let nose_height = spot.transform.transform_point3(glam::Vec3::Y).y;
+    assert!((nose_height - 1.5).abs() < 1e-6, "{nose_height}, expected 0.9 + 0.6");
 }

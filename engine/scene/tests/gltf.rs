@@ -148,7 +148,7 @@ type Fault = (fn(&mut Model), &'static str);
 
 #[test]
 fn faults_are_refused_with_their_place() {
-    let faults: [Fault; 20] = [
+    let faults: [Fault; 22] = [
         (|m| m.json["meshes"][0]["primitives"][0]["indices"] = json!(9), "accessor 9 does not exist"),
         (|m| m.json["accessors"][0]["count"] = json!(5), "do not fit into buffer view 0"),
         (|m| m.json["accessors"][0]["count"] = json!(0), "it is empty"),
@@ -162,6 +162,11 @@ fn faults_are_refused_with_their_place() {
         (|m| m.json["nodes"][0]["children"] = json!([0]), "node 0 \"node\": it is its own ancestor"),
         (|m| m.json["nodes"][0]["children"] = json!([7]), "its child, node 7, does not exist"),
         (|m| m.json["nodes"][0]["scale"] = json!([1e300, 1.0, 1.0]), "not finite"),
+        (
+            |m| m.json["nodes"][0]["scale"] = json!([1e13, 1.0, 1.0]),
+            "instance \"node\": a vertex lies farther",
+        ),
+        (|m| m.positions(&[[3e38; 3]; 4]), "scale the scene down"),
         (|m| m.json["nodes"][0]["rotation"] = json!([0, 0, 0, 0]), "not a quaternion"),
         (|m| m.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]), "uncompressed"),
         (|m| m.json["images"] = json!([{}]), "image 0: neither"),
