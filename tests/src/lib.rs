@@ -5,6 +5,5 @@ pub mod compare;
 pub mod data;
 pub mod device;
 pub mod golden;
-/// Reflection of committed shaders.
 pub mod reflect;
 pub mod spirv;
