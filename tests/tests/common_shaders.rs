@@ -1,6 +1,8 @@
 //! The functions that hosts may copy (`shaders/glsl/common`), run on the device and compared with f64. The rotation
 //! and the product are compared where a pass runs them.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+
 use airglow_gpu::{Binding, BindingDesc, BindingKind, ComputePipelineDesc, Label, Location};
 use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::{cube, equirect};
@@ -178,8 +180,8 @@ fn halves_and_display_colours_are_those_of_the_cpu() {
         let [r, g, b, number] = input.color;
         assert_eq!(row.half_bits, u32::from(half::f16::from_f32(number).to_bits()), "half of {number:e}");
         let truth = tone::tone_map([r, g, b]);
-        for k in 0..3 {
-            display.add(f64::from(row.display[k]), f64::from(truth[k]), input);
+        for (k, truth) in truth.into_iter().enumerate() {
+            display.add(f64::from(row.display[k]), f64::from(truth), input);
             encoded.add(f64::from(row.encoded[k]), f64::from(srgb_encode(row.display[k])), input);
             decoded.add(f64::from(row.decoded[k]), f64::from(row.display[k]), input);
         }

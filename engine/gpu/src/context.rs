@@ -6,7 +6,8 @@ use crate::feature::FeatureSet;
 use crate::frame::FrameSlot;
 use crate::functions;
 use crate::memory::OwnerBytes;
-use crate::requirements::{Offer, Requirements};
+use crate::offer::Offer;
+use crate::requirements::Requirements;
 use crate::shared::{DeviceFacts, Shared, lock};
 use ash::vk;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -191,4 +192,17 @@ unsafe fn check(functions: &functions::Functions, info: &AdoptInfo<'_>) -> Resul
             .get(info.queue_family as usize)
             .map_or(0, |family| family.timestamp_valid_bits),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Buffer, ComputePipeline, Context, Execution, Image, Timing};
+
+    #[test]
+    fn handles_may_move_between_threads() {
+        fn send<T: Send>() {}
+        fn shared<T: Send + Sync>() {}
+        shared::<(Context, Buffer, Image, ComputePipeline)>();
+        send::<(Execution, Timing)>();
+    }
 }

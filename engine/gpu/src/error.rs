@@ -1,6 +1,6 @@
 //! One error type for the device layer: each message names the item and the mend.
 
-use crate::requirements::Missing;
+use crate::offer::Missing;
 use ash::vk;
 
 /// Why something on the device could not be made or recorded.

@@ -13,6 +13,7 @@ mod feature;
 mod frame;
 mod functions;
 mod memory;
+mod offer;
 #[cfg(feature = "open")]
 pub mod open;
 mod pipeline;
@@ -33,6 +34,7 @@ pub use error::GpuError;
 pub use execute::{Execution, Record, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
 pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
+pub use offer::{Missing, Offer};
 pub use pipeline::{
     BindingDesc, BindingKind, Blend, ComputePipeline, ComputePipelineDesc, DepthState, GraphicsPipeline,
     GraphicsPipelineDesc, MAX_BINDINGS, VertexAttribute, VertexBufferLayout,

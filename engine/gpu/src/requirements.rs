@@ -4,9 +4,8 @@
 //! [`Offer`]: what a physical device can do, or what the host has enabled on it. Neither makes a Vulkan call.
 
 use crate::feature::{Feature, FeatureSet};
+use crate::offer::{Missing, Offer};
 use ash::vk;
-use std::collections::BTreeMap;
-use std::fmt;
 
 /// A feature some room needs or can use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,7 +35,7 @@ macro_rules! limits {
                 match self { $(Self::$variant => $name,)* }
             }
 
-            fn get(self, limits: &vk::PhysicalDeviceLimits) -> u64 {
+            pub(crate) fn get(self, limits: &vk::PhysicalDeviceLimits) -> u64 {
                 match self { $(Self::$variant => u64::from(limits.$field),)* }
             }
         }
@@ -191,95 +190,5 @@ impl Requirements {
             }
         }
         missing
-    }
-}
-
-/// What a device offers: plain data, so that checks can be tested on invented devices.
-#[derive(Clone, Debug, Default)]
-pub struct Offer {
-    /// API version of the device (or of the instance, if that is lower).
-    pub api_version: u32,
-    /// Device extensions.
-    pub extensions: Vec<String>,
-    /// Features.
-    pub features: FeatureSet,
-    /// Limits.
-    pub limits: BTreeMap<Limit, u64>,
-    /// Format features: optimal tiling, with the buffer features added.
-    pub formats: BTreeMap<vk::Format, vk::FormatFeatureFlags>,
-    /// Capabilities of the queue family in question.
-    pub queue: vk::QueueFlags,
-}
-
-impl Offer {
-    /// Reads limits, formats (those that `requirements` ask about) and the queue family from a physical device.
-    ///
-    /// Features and extensions are the caller's to state: supported ones to judge a device, enabled ones to adopt it.
-    ///
-    /// # Safety
-    /// `physical_device` belongs to `instance` and both are alive.
-    pub unsafe fn read(
-        instance: &ash::Instance,
-        physical_device: vk::PhysicalDevice,
-        queue_family: u32,
-        requirements: &Requirements,
-    ) -> Self {
-        // SAFETY: the caller vouches for the handles.
-        let (properties, queues) = unsafe {
-            (
-                instance.get_physical_device_properties(physical_device),
-                instance.get_physical_device_queue_family_properties(physical_device),
-            )
-        };
-        let format = |need: &FormatNeed| {
-            // SAFETY: as above.
-            let have =
-                unsafe { instance.get_physical_device_format_properties(physical_device, need.format) };
-            (need.format, have.optimal_tiling_features | have.buffer_features)
-        };
-        Self {
-            api_version: properties.api_version,
-            limits: Limit::ALL.iter().map(|&limit| (limit, limit.get(&properties.limits))).collect(),
-            formats: requirements.formats.iter().map(format).collect(),
-            queue: queues.get(queue_family as usize).map(|family| family.queue_flags).unwrap_or_default(),
-            ..Self::default()
-        }
-    }
-}
-
-/// One thing a device lacks.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[expect(
-    missing_docs,
-    reason = "each variant and field is named after what it holds, and printed by Display"
-)]
-pub enum Missing {
-    ApiVersion { needed: u32, offered: u32 },
-    Extension { name: &'static str },
-    Feature { feature: Feature, buys: &'static str },
-    Limit { need: LimitNeed, offered: u64 },
-    Format { format: vk::Format, lacking: vk::FormatFeatureFlags, why: &'static str },
-    Queue { needed: vk::QueueFlags, offered: vk::QueueFlags },
-}
-
-impl fmt::Display for Missing {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let version = |v: u32| format!("{}.{}", vk::api_version_major(v), vk::api_version_minor(v));
-        match self {
-            Self::ApiVersion { needed, offered } => {
-                write!(out, "Vulkan {} (this is {})", version(*needed), version(*offered))
-            }
-            Self::Extension { name } => write!(out, "extension {name}, not enabled"),
-            Self::Feature { feature, buys } => {
-                write!(out, "feature {}, not enabled ({buys})", feature.name())
-            }
-            Self::Limit { need, offered } => {
-                write!(out, "{} of {} (this is {offered}; {})", need.limit.name(), need.at_least, need.why)
-            }
-            Self::Format { format, lacking, why } => write!(out, "{lacking:?} for {format:?} ({why})"),
-            Self::Queue { needed, offered } => {
-                write!(out, "a queue family with {needed:?} (this has {offered:?})")
-            }
-        }
     }
 }

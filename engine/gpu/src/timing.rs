@@ -1,7 +1,6 @@
 //! Device time of every pass, from timestamps in a ring that never stalls.
 //!
-//! A frame's timestamps are read when its slot of the ring comes round again, or earlier when they happen to be
-//! there; nothing waits. A pass is timed from when the device reaches it behind its barriers to when all its work is
+//! A frame's timestamps are read once the host has begun the frame that makes it known to be done; nothing waits. A pass is timed from when the device reaches it behind its barriers to when all its work is
 //! done, so passes that overlap have a sum above the span.
 
 use crate::context::Context;
@@ -120,6 +119,13 @@ impl Timing {
             let problem = format!("{} passes; it was made for {}", names.len(), self.most_passes);
             return Err(GpuError::misuse("timing", problem));
         }
+        let frame = context.frame();
+        if self.slots[self.current].pending.is_some_and(|(pending, _)| pending == frame) {
+            return Err(GpuError::misuse(
+                "timing",
+                "it measures one recording per frame; use another for a second",
+            ));
+        }
         self.collect()?;
         let passes = names.len();
         if !self.names.iter().map(String::as_str).eq(names.clone()) {
@@ -129,7 +135,7 @@ impl Timing {
         }
         self.current = (self.current + 1) % self.slots.len();
         let slot = &mut self.slots[self.current];
-        slot.pending = Some((context.frame(), passes));
+        slot.pending = Some((frame, passes));
         if passes > 0 {
             // SAFETY: a recording command buffer outside rendering; the slot's last frame is done (see `new`).
             unsafe {
@@ -153,7 +159,10 @@ impl Timing {
         unsafe { self.shared.device().cmd_write_timestamp2(command_buffer, stage, pool, query as u32) };
     }
 
-    /// Reads every finished frame without waiting, and returns the newest one kept so far.
+    /// Reads every frame that is done, without waiting, and returns the newest one kept so far.
+    ///
+    /// A frame counts as done when the frame `frames_in_flight` later has begun. (Availability alone would not do: until
+    /// the device reaches the reset, a query still offers what an older frame wrote.)
     ///
     /// # Errors
     /// [`GpuError::Vulkan`] when the device is lost.
@@ -162,6 +171,9 @@ impl Timing {
         for i in 1..=self.slots.len() {
             let index = (self.current + i) % self.slots.len();
             let Some((frame, passes)) = self.slots[index].pending else { continue };
+            if frame + self.shared.facts.frames_in_flight > self.shared.frame() {
+                continue;
+            }
             if self.read(index, passes)? {
                 self.slots[index].pending = None;
                 self.keep_frame(frame, passes);

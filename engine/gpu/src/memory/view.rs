@@ -28,6 +28,15 @@ impl ViewDesc {
     }
 }
 
+/// Usages that need a Vulkan view; an image that is only copied has none.
+const VIEWED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw()
+        | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT.as_raw()
+        | vk::ImageUsageFlags::INPUT_ATTACHMENT.as_raw(),
+);
+
 /// A view of an image; keeps the image.
 #[derive(Clone)]
 pub struct ImageView {
@@ -66,6 +75,9 @@ impl Image {
             return Ok(ImageView { image: self.clone(), raw, desc });
         }
         self.check_view(&desc)?;
+        if !self.desc().usage.intersects(VIEWED) {
+            return Ok(ImageView { image: self.clone(), raw: vk::ImageView::null(), desc });
+        }
         let info = vk::ImageViewCreateInfo::default()
             .image(self.raw())
             .view_type(desc.dimension)
@@ -111,7 +123,7 @@ impl Image {
 }
 
 impl ImageView {
-    /// The Vulkan handle.
+    /// The Vulkan handle; null for an image that can only be copied.
     pub fn raw(&self) -> vk::ImageView {
         self.raw
     }

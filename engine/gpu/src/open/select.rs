@@ -2,7 +2,7 @@
 
 use crate::error::GpuError;
 use crate::feature::FeatureSet;
-use crate::requirements::Missing;
+use crate::offer::Missing;
 use ash::vk;
 use std::convert::Infallible;
 use std::ffi::CStr;

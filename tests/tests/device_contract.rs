@@ -1,0 +1,317 @@
+//! What a host may rely on: adoption with named errors, memory accounts, deferred destruction, several contexts,
+//! timestamps that do not stall, misuse refused, and validation that is alive.
+
+use airglow_gpu::ash::vk;
+use airglow_gpu::open::{FrameLoop, FrameSemaphores};
+use airglow_gpu::requirements::{Limit, LimitNeed};
+use airglow_gpu::{
+    AdoptInfo, Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context,
+    Execution, Feature, FeatureSet, GpuError, Imports, Label, Location, Record, Requirements, Timing,
+};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, Limits, PassKind};
+use airglow_tests::compare::assert_same_bits;
+use airglow_tests::device::{fixture, open};
+use airglow_tests::spirv::words;
+use std::ffi::{CStr, c_char};
+use std::sync::OnceLock;
+
+const COUNT: u32 = 256;
+const BYTES: u64 = COUNT as u64 * 16;
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
+    vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
+        | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
+        | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
+);
+
+fn colours_pipeline(context: &Context) -> ComputePipeline {
+    let bindings =
+        [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::UniformBuffer)];
+    let spirv = words("test/colours_compute");
+    let desc =
+        ComputePipelineDesc { name: "colours", spirv: &spirv, bindings: &bindings, push_constant_size: 4 };
+    context.create_compute_pipeline(&desc).unwrap()
+}
+
+fn storage(context: &Context, owner: &str, size: u64) -> Buffer {
+    let desc = BufferDesc { size, usage: STORAGE };
+    context.create_buffer(Label::new(owner, "colours"), &desc, Location::Device).unwrap()
+}
+
+fn record_colours(
+    recorder: &mut airglow_gpu::Recorder<'_>,
+    pipeline: &ComputePipeline,
+    buffer: &Buffer,
+    tint: f32,
+) -> Result<(), GpuError> {
+    let tint = recorder.upload(&[[tint; 4]])?;
+    recorder.bind_compute(pipeline, &[Binding::storage(0, buffer), Binding::uniform(1, &tint)])?;
+    recorder.push_constants(&COUNT)?;
+    recorder.dispatch([COUNT.div_ceil(64), 1, 1])
+}
+
+fn error<T>(result: Result<T, GpuError>) -> String {
+    result.err().expect("this must be refused").to_string()
+}
+
+/// The device's true function, for [`without_dispatch_indirect`].
+static DEVICE_PROC_ADDR: OnceLock<vk::PFN_vkGetDeviceProcAddr> = OnceLock::new();
+
+/// A host's get-proc-addr that does not know one function.
+unsafe extern "system" fn without_dispatch_indirect(
+    device: vk::Device,
+    name: *const c_char,
+) -> vk::PFN_vkVoidFunction {
+    // SAFETY: the library passes the device and a nul-terminated name.
+    unsafe {
+        match DEVICE_PROC_ADDR.get() {
+            Some(get) if CStr::from_ptr(name) != c"vkCmdDispatchIndirect" => get(device, name),
+            _ => None,
+        }
+    }
+}
+
+#[test]
+fn adopting_names_what_is_missing() {
+    let device = open(&Requirements::engine());
+    let adopt = |change: &dyn Fn(&mut AdoptInfo<'_>)| {
+        let mut extensions = Vec::new();
+        let mut info = device.adopt_info(&mut extensions, 2);
+        change(&mut info);
+        // SAFETY: the handles are the open device's; the context is dropped at once, and nothing was submitted.
+        unsafe { Context::adopt(info) }
+    };
+    assert!(adopt(&|_| {}).is_ok());
+
+    let lacking = FeatureSet::default().with(Feature::DynamicRendering);
+    let message = error(adopt(&|info| info.features = lacking));
+    assert!(message.contains("feature synchronization2, not enabled (the plan's barriers)"), "{message}");
+    assert!(!message.contains("dynamicRendering"), "{message}");
+
+    let message = error(adopt(&|info| info.api_version = vk::API_VERSION_1_2));
+    assert!(message.contains("Vulkan 1.3 (this is 1.2)"), "{message}");
+
+    let message = error(adopt(&|info| info.queue_family = 99));
+    assert!(message.contains("a queue family with"), "{message}");
+
+    let mut greedy = Requirements::engine();
+    greedy.extensions.push("VK_EXT_nothing");
+    greedy.limits =
+        vec![LimitNeed { limit: Limit::ComputeSharedMemorySize, at_least: 1 << 40, why: "greed" }];
+    let mut extensions = Vec::new();
+    let info = AdoptInfo { requirements: &greedy, ..device.adopt_info(&mut extensions, 2) };
+    // SAFETY: as above.
+    let message = error(unsafe { Context::adopt(info) });
+    assert!(message.contains("extension VK_EXT_nothing, not enabled"), "{message}");
+    assert!(message.contains("maxComputeSharedMemorySize of 1099511627776"), "{message}");
+
+    let message = error(adopt(&|info| info.frames_in_flight = 0));
+    assert!(message.contains("frames_in_flight"), "{message}");
+
+    DEVICE_PROC_ADDR.set(device.instance().fp_v1_0().get_device_proc_addr).unwrap();
+    let message = error(adopt(&|info| info.get_device_proc_addr = Some(without_dispatch_indirect)));
+    assert!(message.contains("returned null for vkCmdDispatchIndirect"), "{message}");
+    assert!(device.messages().take().is_empty(), "adopting and refusing leaves validation silent");
+}
+
+#[test]
+fn memory_is_charged_to_owners_and_freed_frames_later() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let bytes = |owner: &str| {
+        context.memory_report().iter().find(|entry| entry.owner == owner).map_or(0, |entry| entry.bytes)
+    };
+    let first = storage(context, "fog", 1000);
+    let second = storage(context, "fog", 3000);
+    let _other = storage(context, "relight", 500);
+    let held = bytes("fog");
+    assert!((4000..8192).contains(&held), "{held} bytes for 4000");
+    assert!(bytes("relight") >= 500);
+    drop(second);
+    assert_eq!(bytes("fog"), held, "frames in flight may still use it");
+    let frame = context.frame();
+    // SAFETY: nothing was submitted.
+    unsafe { context.begin_frame(frame + 1) }.unwrap();
+    assert_eq!(bytes("fog"), held, "one frame later, the other in flight may still use it");
+    // SAFETY: as above.
+    unsafe { context.begin_frame(frame + 2) }.unwrap();
+    let left = bytes("fog");
+    assert!((1000..held - 2999).contains(&left), "{left} bytes for 1000");
+    drop(first);
+    // SAFETY: as above.
+    let message = error(unsafe { context.begin_frame(frame + 2) });
+    assert!(message.contains("frames count up"), "{message}");
+    let too_large = BufferDesc { size: 1 << 50, usage: STORAGE };
+    let message = error(context.create_buffer(Label::new("fog", "all of it"), &too_large, Location::Device));
+    assert!(
+        message.contains("all of it needs 1125899906842624 bytes but maxMemoryAllocationSize"),
+        "{message}"
+    );
+}
+
+#[test]
+fn contexts_interleave() {
+    let (left, right) = (fixture(), fixture());
+    let contexts = [left.context(), right.context()];
+    let pipelines = contexts.map(colours_pipeline);
+    let buffers = contexts.map(|context| storage(context, "test", BYTES));
+    let mut copies = [Vec::new(), Vec::new()];
+    for round in 0..3u8 {
+        for (i, fixture) in [&left, &right].into_iter().enumerate() {
+            let readback = fixture.device().run(contexts[i], |recorder| {
+                record_colours(recorder, &pipelines[i], &buffers[i], f32::from(round))?;
+                recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
+                recorder.read_back_buffer(&buffers[i])
+            });
+            copies[i] = readback.unwrap().read::<f32>().unwrap();
+        }
+    }
+    assert!(copies[0].iter().any(|&value| value > 1.0), "the last round doubles the colours");
+    assert_same_bits("two contexts", &copies[0], &copies[1]);
+    let message = error(left.device().run(contexts[0], |recorder| {
+        recorder.bind_compute(&pipelines[1], &[])?;
+        Ok(())
+    }));
+    assert!(message.contains("made by another context"), "{message}");
+}
+
+#[test]
+fn timestamps_come_frames_later_without_waiting() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let pipeline = colours_pipeline(context);
+    let buffer = storage(context, "test", BYTES);
+    let mut graph: Graph<Record> = Graph::new();
+    let mut handle = graph.import_buffer(
+        "colours",
+        *buffer.desc(),
+        Access::ComputeStorageWrite,
+        Access::ComputeStorageWrite,
+    );
+    let imported = handle;
+    for name in ["first", "second"] {
+        let mut pass = graph.pass(name, PassKind::Compute);
+        handle = pass.update(handle, Access::ComputeStorageReadWrite);
+        let (pipeline, target) = (pipeline.clone(), handle);
+        pass.record(Box::new(move |recorder, resources| {
+            record_colours(recorder, &pipeline, resources.buffer(&target)?, 1.0)
+        }));
+    }
+    let mut execution = Execution::prepare(context, graph.compile(&Limits::default()).unwrap()).unwrap();
+    let mut imports = Imports::new();
+    imports.buffer(&imported, &buffer);
+
+    let warm_up = 3;
+    let mut timing = Timing::new(context, 2, warm_up, 8).unwrap();
+    assert_eq!(timing.collect().unwrap(), None, "nothing was recorded yet");
+    let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
+    let recorded = 12;
+    for _ in 0..recorded {
+        let recorded = frames.frame(FrameSemaphores::default(), |command_buffer| {
+            // SAFETY: the loop's command buffer is recording; the buffer's state is as declared from frame to frame.
+            unsafe { execution.record(context, command_buffer, &imports, Some(&mut timing)) }
+        });
+        let recorded = recorded.unwrap();
+        assert_eq!(recorded.passes, 2);
+        assert!(recorded.barriers >= 1 && recorded.cpu.as_secs_f64() < 1.0, "{recorded:?}");
+    }
+    frames.finish().unwrap();
+    assert!(timing.collect().unwrap().is_some());
+    let summary = timing.summary().unwrap();
+    assert_eq!(timing.passes(), ["first", "second"]);
+    assert_eq!(summary.frames, 8, "the newest 8 of {recorded} less {warm_up}");
+    for frame in timing.frames() {
+        let longest = frame.passes.iter().fold(0.0, |a: f64, &b| a.max(b));
+        assert!(frame.passes.iter().all(|&time| time > 0.0), "{frame:?}");
+        assert!(frame.span >= longest && frame.span < 10.0, "{frame:?}");
+        assert!((frame.sum - frame.passes.iter().sum::<f64>()).abs() < 1e-12, "{frame:?}");
+    }
+}
+
+#[test]
+fn misuse_is_refused_before_it_is_recorded() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let pipeline = colours_pipeline(context);
+    let buffer = storage(context, "test", BYTES);
+    let uniform_only = BufferDesc { size: 64, usage: vk::BufferUsageFlags::UNIFORM_BUFFER };
+    let uniform =
+        context.create_buffer(Label::new("test", "uniform"), &uniform_only, Location::Device).unwrap();
+    let (storage_0, uniform_1) = (Binding::storage(0, &buffer), Binding::uniform(1, &uniform));
+    let refused = |problem: &str, run: &dyn Fn(&mut airglow_gpu::Recorder<'_>) -> Result<(), GpuError>| {
+        let message = error(fixture.device().run(context, run));
+        assert!(message.contains(problem), "expected `{problem}`, got `{message}`");
+    };
+    refused("binding 1 (UniformBuffer) is not given", &|r| r.bind_compute(&pipeline, &[storage_0.clone()]));
+    refused("binding 0 is given twice", &|r| {
+        r.bind_compute(&pipeline, &[storage_0.clone(), storage_0.clone(), uniform_1.clone()])
+    });
+    refused("binding 0 is StorageBuffer, given UniformBuffer", &|r| {
+        r.bind_compute(&pipeline, &[Binding::uniform(0, &uniform), uniform_1.clone()])
+    });
+    refused("made without STORAGE_BUFFER", &|r| {
+        r.bind_compute(&pipeline, &[Binding::storage(0, &uniform), uniform_1.clone()])
+    });
+    refused("is no multiple of", &|r| {
+        let odd = buffer.slice(4, 64)?;
+        r.bind_compute(&pipeline, &[Binding::storage(0, odd), uniform_1.clone()])
+    });
+    refused("bind a pipeline first", &|r| r.dispatch([1; 3]));
+    refused("give it its push constants first", &|r| {
+        r.bind_compute(&pipeline, &[storage_0.clone(), uniform_1.clone()])?;
+        r.dispatch([1; 3])
+    });
+    refused("8 bytes of push constants given, 4 stated", &|r| {
+        r.bind_compute(&pipeline, &[storage_0.clone(), uniform_1.clone()])?;
+        r.push_constants(&[1u32, 2])
+    });
+    refused("maxComputeWorkGroupCount", &|r| {
+        r.bind_compute(&pipeline, &[storage_0.clone(), uniform_1.clone()])?;
+        r.push_constants(&1u32)?;
+        r.dispatch([u32::MAX, 1, 1])
+    });
+    refused("bind a graphics pipeline", &|r| {
+        r.bind_compute(&pipeline, &[storage_0.clone(), uniform_1.clone()])?;
+        r.push_constants(&1u32)?;
+        r.draw(0..3, 0..1)
+    });
+    refused("overlap", &|r| r.copy_buffer(buffer.slice(0, 64)?, buffer.slice(32, 64)?));
+    refused("not within its", &|r| r.fill(buffer.slice(BYTES - 4, 8)?, 0));
+    refused("not mapped", &|_| buffer.write(0, &[1u32]));
+    let usage = vk::ImageUsageFlags::SAMPLED;
+    let huge = ImageDesc { usage, ..ImageDesc::new_2d(1 << 20, 4, vk::Format::R8G8B8A8_UNORM) };
+    let message = error(context.create_image(Label::new("test", "huge"), &huge));
+    assert!(message.contains("huge: 1048576 x 4 x 1 texels; the device allows"), "{message}");
+}
+
+/// The net that all other tests hang in: what is plainly wrong must be heard.
+#[test]
+fn validation_is_alive() {
+    let fixture = fixture();
+    if std::env::var("AIRGLOW_TEST_VALIDATION").as_deref() == Ok("off") {
+        println!("not run: validation is off");
+        return;
+    }
+    let context = fixture.context();
+    let pipeline = colours_pipeline(context);
+    let buffer = storage(context, "test", BYTES);
+    // Without the barrier between dispatch and copy: a hazard.
+    let result = fixture.device().run(context, |recorder| {
+        record_colours(recorder, &pipeline, &buffer, 1.0)?;
+        recorder.read_back_buffer(&buffer)
+    });
+    result.unwrap();
+    let heard = fixture.messages().take();
+    let hazard = heard.iter().any(|message| message.id.contains("SYNC-HAZARD-READ-AFTER-WRITE"));
+    assert!(hazard, "synchronisation validation is silent; heard {heard:?}");
+    // SAFETY: a buffer of no bytes is wrong on purpose, and what core validation has to report; it is never used.
+    unsafe {
+        let info = vk::BufferCreateInfo::default().size(0).usage(STORAGE);
+        if let Ok(raw) = context.device().create_buffer(&info, None) {
+            context.device().destroy_buffer(raw, None);
+        }
+    }
+    let heard = fixture.messages().take();
+    let core =
+        heard.iter().any(|message| message.error && message.id.contains("VUID-VkBufferCreateInfo-size"));
+    assert!(core, "core validation is silent; heard {heard:?}");
+}
