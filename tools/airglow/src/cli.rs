@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, compare, devices, render};
+use crate::commands::{bake, compare, devices, eval, plan, render};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -55,4 +55,6 @@ pub enum Command {
     Bake(bake::Arguments),
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Plan(plan::Arguments),
+    Eval(eval::Arguments),
 }

@@ -3,6 +3,8 @@
 pub mod bake;
 pub mod compare;
 pub mod devices;
+pub mod eval;
+pub mod plan;
 pub mod render;
 pub mod scene;
 
@@ -18,5 +20,7 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Bake(arguments) => bake::run(&arguments, output),
         Command::Render(arguments) => render::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
+        Command::Plan(arguments) => plan::run(&arguments, global, output),
+        Command::Eval(arguments) => eval::run(&arguments, global, output),
     }
 }

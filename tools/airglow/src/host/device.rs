@@ -30,6 +30,7 @@ pub fn with<R>(
     let options =
         OpenOptions { selector, validation: global.validate, ..OpenOptions::new(requirements) };
     let open = OpenDevice::open(&options).map_err(Failure::device)?;
+    let log = open.messages();
     let result = {
         // SAFETY: `context` and, by the contract of this function, all that `work` makes from it are dropped in this
         // block, before `open`; `work` waits for what it submits (`Device::run`, `Device::frames`), and so does the
@@ -39,11 +40,13 @@ pub fn with<R>(
         open.wait_idle().map_err(Failure::work)?;
         result
     };
-    let messages = open.take_messages();
-    if let Some(first) = messages.first() {
-        return Err(Failure::check(format!("{} validation messages, the first: {first:?}", messages.len())));
+    // Destroying the device is heard too.
+    drop(open);
+    let messages = log.take();
+    match messages.first() {
+        Some(first) => Err(Failure::check(format!("{} validation messages, the first: {first}", messages.len()))),
+        None => result,
     }
-    result
 }
 
 impl Device<'_> {
@@ -85,6 +88,13 @@ impl Device<'_> {
             timing.collect().map_err(Failure::work)?;
         }
         Ok(cpu)
+    }
+
+    /// The same as a function, for what the rooms offer to tools and tests.
+    pub fn bench(
+        &self,
+    ) -> impl Fn(&mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>) -> Result<(), GpuError> {
+        |record| self.run(record)
     }
 
     /// What the graph may ask of the device.

@@ -1,0 +1,120 @@
+//! `airglow eval`: a pass's own code on rows of parameters.
+
+use std::path::PathBuf;
+
+use airglow::relight::Relight;
+use airglow::relight::Bench;
+use clap::{Args, ValueEnum};
+
+use crate::cli::Global;
+use crate::eval::table::Table;
+use crate::eval::{Settings, relight};
+use crate::failure::{Failure, Outcome};
+use crate::files;
+use crate::host::device;
+use crate::output::Output;
+
+/// Run a pass's own GPU code on rows of parameters: to check it against your own numbers, or to plot it.
+///
+/// The output holds the input columns unchanged, the result columns, and a last column `error` with the reason where
+/// a row was refused. Numbers have nine significant digits; vectors inside a cell are separated by `;`; lines that
+/// start with `#` are comments.
+#[derive(Debug, Args)]
+#[command(after_help = "Names and their columns:
+  environment-sh  order -> red, green, blue          --set image=FILE.exr, equirectangular
+  sh-product      order, f, g -> product             order n in, order n out
+  sh-rotate       order, f, qx, qy, qz, qw -> rotated   rotated(s) = f(q^-1 s q)
+
+Example:
+  printf 'order,f,qx,qy,qz,qw\\n2,1;0;0.5;0,0,1,0,1\\n' > rows.csv
+  airglow eval sh-rotate --in rows.csv --out rotated.csv --reference")]
+pub struct Arguments {
+    /// What to evaluate.
+    #[arg(value_enum, value_name = "NAME")]
+    name: Evaluator,
+    /// Rows of parameters, with a header that names the columns.
+    #[arg(long = "in", value_name = "FILE.csv")]
+    input: PathBuf,
+    /// Where the rows go with their results.
+    #[arg(long = "out", value_name = "FILE.csv")]
+    output: PathBuf,
+    /// A setting that holds for all rows. May be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    settings: Vec<(String, String)>,
+    /// Add the columns of the f64 reference, with the suffix `_ref`.
+    #[arg(long)]
+    reference: bool,
+}
+
+/// What can be evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Evaluator {
+    /// An environment projected on spherical harmonics.
+    EnvironmentSh,
+    /// The product of two functions in spherical harmonics.
+    ShProduct,
+    /// A rotated function in spherical harmonics.
+    ShRotate,
+}
+
+impl Evaluator {
+    fn columns(self) -> &'static [&'static str] {
+        match self {
+            Self::EnvironmentSh => &["order"],
+            Self::ShProduct => &["order", "f", "g"],
+            Self::ShRotate => &["order", "f", "qx", "qy", "qz", "qw"],
+        }
+    }
+
+    fn settings(self) -> &'static [&'static str] {
+        match self {
+            Self::EnvironmentSh => &["image"],
+            Self::ShProduct | Self::ShRotate => &[],
+        }
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
+    let input = arguments.input.display().to_string();
+    let table = Table::read(&input, &files::read_text(&arguments.input)?)?;
+    table.require(&input, arguments.name.columns())?;
+    let settings = settings(arguments)?;
+    let requirements = Relight::requirements(&airglow::relight::Settings { order: 6, ..Default::default() });
+    let columns = device::with(global, &requirements, |device| {
+        let run = device.bench();
+        let bench = Bench { context: device.context(), run: &run };
+        match arguments.name {
+            Evaluator::EnvironmentSh => relight::environment_sh(&bench, &table, &settings),
+            Evaluator::ShProduct => relight::sh_product(&bench, &table),
+            Evaluator::ShRotate => relight::sh_rotate(&bench, &table),
+        }
+    })?;
+    let (names, rows) = columns.written(arguments.reference);
+    let refused = rows.iter().filter(|row| row.is_err()).count();
+    files::write(&arguments.output, &table.with_results(&names, &rows)?)?;
+    output.say(format!(
+        "wrote {}: {} rows, {refused} refused{}",
+        arguments.output.display(),
+        rows.len(),
+        if refused > 0 { " (see the column `error`)" } else { "" }
+    ));
+    Ok(())
+}
+
+fn settings(arguments: &Arguments) -> Outcome<Settings> {
+    let known = arguments.name.settings();
+    if let Some((key, _)) = arguments.settings.iter().find(|(key, _)| !known.contains(&key.as_str())) {
+        return Err(Failure::usage(format!(
+            "--set {key}: not a setting of this evaluator; known: {}",
+            if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+        )));
+    }
+    Ok(arguments.settings.iter().cloned().collect())
+}
+
+/// `key=value`.
+fn key_value(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or_else(|| format!("`{text}`: write it as key=value"))?;
+    Ok((key.to_owned(), value.to_owned()))
+}
