@@ -21,7 +21,7 @@ fn main() -> Result<(), BakeError> {
     let pick = |all: &[[f32; 3]]| all.iter().copied().step_by(step).collect::<Vec<_>>();
     let (some_positions, some_normals) = (pick(&positions), pick(&normals));
     let some = Mesh { name: "share", positions: &some_positions, normals: &some_normals, indices: &[] };
-    for visibility in [None, Some(BelowHorizon::Mirrored)] {
+    for visibility in [None, Some(BelowHorizon::Mean)] {
         let settings = Settings { order, rays, visibility, ..Settings::default() };
         let mut progress = |report: &Report| {
             let left = report.time_left().unwrap_or_default();

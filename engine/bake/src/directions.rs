@@ -33,19 +33,19 @@ pub(crate) struct Directions {
     pub residual: Vec<f64>,
 }
 
-/// Share of the samples spread by the cosine when visibility is wanted too, the others being uniform: it keeps
-/// the visibility weights 1/q bounded by 4π.
-pub(crate) const COSINE_SHARE_WITH_VISIBILITY: f64 = 0.5;
+/// Share of the samples spread by the cosine, the others being uniform. Half and half bounds the visibility
+/// weights 1/q by 4π; the transfer's error is within 5 % of the best share's (0.75), smaller than that of the
+/// pure cosine, and asking for visibility does not change the transfer.
+const COSINE_SHARE: f64 = 0.5;
 
 impl Directions {
     /// The set of `settings`, which have been checked.
     pub(crate) fn new(settings: &Settings) -> Result<Self, MathError> {
-        let share = if settings.visibility.is_some() { COSINE_SHARE_WITH_VISIBILITY } else { 1.0 };
-        Self::with_cosine_share(settings, share)
+        Self::with_cosine_share(settings, COSINE_SHARE)
     }
 
     /// The set whose density is q(s) = (1 - share) / 2π + share · cos / π.
-    pub(crate) fn with_cosine_share(settings: &Settings, share: f64) -> Result<Self, MathError> {
+    fn with_cosine_share(settings: &Settings, share: f64) -> Result<Self, MathError> {
         let (count, rays) = (settings.coefficient_count(), settings.rays as usize);
         let parts = if settings.visibility.is_some() { 2 } else { 1 };
         let width = (parts * count).next_multiple_of(LANES);

@@ -24,6 +24,8 @@ mod settings;
 mod transfer;
 mod triangle;
 mod vertices;
+#[cfg(test)]
+mod watertight;
 
 pub use airglow_math::MathError;
 pub use analytic::unshadowed;

@@ -60,13 +60,16 @@ mod tests {
     #[test]
     fn a_wall_blocks_the_rays_that_meet_it_and_no_others() {
         let floor = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        let mesh = Mesh { name: "floor", positions: &floor, normals: &[[0.0, 1.0, 0.0]; 3], indices: &[0, 1, 2] };
+        let mesh =
+            Mesh { name: "floor", positions: &floor, normals: &[[0.0, 1.0, 0.0]; 3], indices: &[0, 1, 2] };
         let wall = [[-1.0, -1.0, -1.0], [-1.0, -1.0, 9.0], [-1.0, 9.0, -1.0]];
-        let wall = Mesh { name: "wall", positions: &wall, normals: &[[1.0, 0.0, 0.0]; 3], indices: &[0, 1, 2] };
+        let wall =
+            Mesh { name: "wall", positions: &wall, normals: &[[1.0, 0.0, 0.0]; 3], indices: &[0, 1, 2] };
         let occluders = Occluders::build(&[mesh.occluder(), wall.occluder()]).unwrap();
         let probe = Probe::new(&mesh, Mat4::IDENTITY, &occluders, f32::INFINITY).unwrap();
         assert_eq!((probe.vertex_count(), probe.normal(0), probe.normal(3)), (3, Some(DVec3::Y), None));
-        for (direction, seen) in [([-1.0, 0.1, 0.0], false), ([1.0, 0.1, 0.0], true), ([0.0, 1.0, 0.0], true)] {
+        for (direction, seen) in [([-1.0, 0.1, 0.0], false), ([1.0, 0.1, 0.0], true), ([0.0, 1.0, 0.0], true)]
+        {
             let direction = DVec3::from(direction).normalize();
             assert_eq!(probe.sees(0, direction), seen, "{direction}");
         }

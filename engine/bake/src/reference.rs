@@ -65,6 +65,8 @@ pub fn vectors(
     let count = order * order;
     let mut sums = Vectors { transfer: vec![0.0; count], visibility: vec![0.0; count] };
     let mut basis = vec![0.0; count];
+    let mut lower = vec![0.0; count];
+    let mut free_share = 0.0;
     let (across, along) = normal.any_orthonormal_pair();
     let cell = TAU / (4 * rings * rings) as f64;
     for ring in 0..rings {
@@ -72,24 +74,23 @@ pub fn vectors(
         for sector in 0..4 * rings {
             let (sin, cos) = (TAU * (sector as f64 + 0.5) / (4 * rings) as f64).sin_cos();
             let flat = (across * cos + along * sin) * (1.0 - z * z).sqrt();
-            let (above, mirrored) = (flat + normal * z, flat - normal * z);
-            let visible = if free(position + normal * offset, above, triangles) { 1.0 } else { 0.0 };
-            evaluate(order, above, &mut basis)?;
-            for i in 0..count {
-                sums.transfer[i] += visible * z / PI * basis[i] * cell;
-                sums.visibility[i] += visible * basis[i] * cell;
-            }
-            let visible_below = match below {
-                BelowHorizon::Mirrored => visible,
-                BelowHorizon::Visible => 1.0,
-                BelowHorizon::Blocked => 0.0,
-            };
-            evaluate(order, mirrored, &mut basis)?;
-            for i in 0..count {
-                sums.visibility[i] += visible_below * basis[i] * cell;
+            evaluate(order, flat - normal * z, &mut basis)?;
+            lower.iter_mut().zip(&basis).for_each(|(sum, value)| *sum += value * cell);
+            let direction = flat + normal * z;
+            if free(position + normal * offset, direction, triangles) {
+                free_share += z / PI * cell;
+                evaluate(order, direction, &mut basis)?;
+                sums.transfer.iter_mut().zip(&basis).for_each(|(sum, value)| *sum += z / PI * value * cell);
+                sums.visibility.iter_mut().zip(&basis).for_each(|(sum, value)| *sum += value * cell);
             }
         }
     }
+    let visible_below = match below {
+        BelowHorizon::Mean => free_share,
+        BelowHorizon::Visible => 1.0,
+        BelowHorizon::Blocked => 0.0,
+    };
+    sums.visibility.iter_mut().zip(&lower).for_each(|(sum, value)| *sum += visible_below * value);
     Ok(sums)
 }
 

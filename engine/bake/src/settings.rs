@@ -36,12 +36,13 @@ impl Default for Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BelowHorizon {
-    /// V(s) of the mirror image of s in the tangent plane. Nothing jumps at the horizon, an open vertex gives
-    /// V = 1 and a closed one V = 0, both exactly.
-    Mirrored,
+    /// V = the share of the cosine-weighted upper hemisphere that is free. An open vertex then has V = 1 and a
+    /// closed one V = 0, both exactly; over orders 2 to 6 its product with the clamped cosine is nearest to the
+    /// transfer vector.
+    Mean,
     /// V = 1: what other geometry blocks, without the vertex's own surface.
     Visible,
-    /// V = 0: the surface blocks its own lower hemisphere.
+    /// V = 0: the surface blocks its own lower hemisphere, as shading normals tilted off the vertex's see it.
     Blocked,
 }
 

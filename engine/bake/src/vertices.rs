@@ -48,10 +48,11 @@ impl<'a> Vertices<'a> {
             let what = "world position";
             return Err(BakeError::NotFinite { mesh: mesh.name.to_owned(), what, vertex });
         }
+        let normals: Vec<DVec3> = mesh.normals.iter().map(|normal| placement.normal(*normal)).collect();
         Ok(Self {
-            normals: mesh.normals.iter().map(|normal| placement.normal(*normal)).collect(),
-            surroundings: surroundings(&positions, mesh.indices),
+            surroundings: surroundings(&positions, &normals, mesh.indices),
             positions,
+            normals,
             occluders,
             directions: Directions::new(settings)?,
             rotation: FrameRotation::new(settings.order)?,
@@ -110,9 +111,11 @@ impl<'a> Vertices<'a> {
                 *sum += share * residual;
             }
             let (transfer_sums, visibility_sums) = sums.split_at_mut(count);
+            // Y_00 is 1 / sqrt(4π) everywhere.
+            let free_share = transfer_sums[0] * (2.0 * TAU).sqrt();
             self.write(&frame, transfer_sums, transfer)?;
             if let Some(below) = self.settings.visibility {
-                self.extend_below(below, &mut visibility_sums[..count]);
+                self.extend_below(below, free_share, &mut visibility_sums[..count]);
                 self.write(&frame, &mut visibility_sums[..count], visibility)?;
             }
         }
@@ -161,20 +164,15 @@ impl<'a> Vertices<'a> {
         Ok(())
     }
 
-    /// Completes the visibility of the upper hemisphere by what counts below the horizon.
-    fn extend_below(&self, below: BelowHorizon, upper: &mut [f64]) {
-        match below {
-            BelowHorizon::Blocked => {}
-            BelowHorizon::Visible => upper.iter_mut().zip(&self.lower).for_each(|(sum, lower)| *sum += lower),
-            // Mirrored in z, the basis function (l, m) takes the sign of (-1)^(l+m).
-            BelowHorizon::Mirrored => {
-                for l in 0..self.settings.order {
-                    for (offset, value) in upper[l * l..(l + 1) * (l + 1)].iter_mut().enumerate() {
-                        *value *= if offset % 2 == 0 { 2.0 } else { 0.0 };
-                    }
-                }
-            }
-        }
+    /// Completes the visibility of the upper hemisphere by what counts below the horizon, in the normal's frame;
+    /// `free` is the free share of the cosine-weighted upper hemisphere.
+    fn extend_below(&self, below: BelowHorizon, free: f64, upper: &mut [f64]) {
+        let value = match below {
+            BelowHorizon::Mean => free,
+            BelowHorizon::Visible => 1.0,
+            BelowHorizon::Blocked => 0.0,
+        };
+        upper.iter_mut().zip(&self.lower).for_each(|(sum, lower)| *sum += value * lower);
     }
 }
 

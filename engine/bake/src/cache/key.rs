@@ -60,7 +60,7 @@ impl Hasher {
     fn settings(&mut self, settings: &Settings) {
         let below = match settings.visibility {
             None => 0,
-            Some(BelowHorizon::Mirrored) => 1,
+            Some(BelowHorizon::Mean) => 1,
             Some(BelowHorizon::Visible) => 2,
             Some(BelowHorizon::Blocked) => 3,
         };
@@ -129,7 +129,7 @@ mod tests {
             key(Settings { rays: 255, ..Settings::default() }),
             key(Settings { seed: 1, ..Settings::default() }),
             key(Settings { reach: 1.0, ..Settings::default() }),
-            key(Settings { visibility: Some(BelowHorizon::Mirrored), ..Settings::default() }),
+            key(Settings { visibility: Some(BelowHorizon::Mean), ..Settings::default() }),
             key(Settings { visibility: Some(BelowHorizon::Blocked), ..Settings::default() }),
             CacheKey::new(
                 &mesh(),
