@@ -103,7 +103,8 @@ impl Context {
     ///
     /// # Safety
     /// The device has finished everything recorded in frames up to `frame - frames_in_flight`, and those command
-    /// buffers will not be submitted again. A command buffer is submitted in the frame it was recorded in.
+    /// buffers will not be submitted again. A command buffer is submitted in the frame it was recorded in, and no
+    /// recorder of an earlier frame is used again.
     pub unsafe fn begin_frame(&self, frame: u64) -> Result<(), GpuError> {
         let last = self.shared.frame();
         if frame <= last {
@@ -132,6 +133,18 @@ impl Context {
     /// The device's limits.
     pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
         &self.shared.facts.limits
+    }
+
+    /// The limits to compile a graph for this device with.
+    pub fn graph_limits(&self) -> airglow_graph::Limits {
+        let limits = self.limits();
+        airglow_graph::Limits {
+            queue_family: self.shared.facts.queue_family,
+            max_buffer_size: self.shared.facts.max_allocation,
+            max_image_dimension_2d: limits.max_image_dimension2_d,
+            max_image_dimension_3d: limits.max_image_dimension3_d,
+            max_image_array_layers: limits.max_image_array_layers,
+        }
     }
 
     /// The features the host enabled.
@@ -183,6 +196,7 @@ unsafe fn check(functions: &functions::Functions, info: &AdoptInfo<'_>) -> Resul
     let limits = properties.properties.limits;
     Ok(DeviceFacts {
         physical_device: info.physical_device,
+        queue_family: info.queue_family,
         limits,
         features: info.features,
         frames_in_flight: u64::from(info.frames_in_flight),

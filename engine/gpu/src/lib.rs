@@ -6,6 +6,7 @@
 //! [`Image`] and pipelines.
 
 mod allocator;
+mod clock;
 mod context;
 mod error;
 mod execute;

@@ -25,6 +25,7 @@ pub(crate) struct Shared {
 /// What does not change about a device while it lives.
 pub(crate) struct DeviceFacts {
     pub physical_device: vk::PhysicalDevice,
+    pub queue_family: u32,
     pub limits: vk::PhysicalDeviceLimits,
     pub features: FeatureSet,
     pub frames_in_flight: u64,

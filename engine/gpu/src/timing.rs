@@ -3,6 +3,7 @@
 //! A frame's timestamps are read once the host has begun the frame that makes it known to be done; nothing waits. A pass is timed from when the device reaches it behind its barriers to when all its work is
 //! done, so passes that overlap have a sum above the span.
 
+use crate::clock::{Clock, mask, median};
 use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
@@ -242,71 +243,5 @@ impl Timing {
 impl Drop for Timing {
     fn drop(&mut self) {
         self.slots.iter().for_each(|slot| self.shared.retire(Retired::QueryPool(slot.pool)));
-    }
-}
-
-/// The bits of a timestamp that mean something.
-fn mask(valid_bits: u32) -> u64 {
-    u64::MAX.checked_shr(64 - valid_bits.min(64)).unwrap_or(0)
-}
-
-/// How raw timestamps become seconds.
-struct Clock {
-    mask: u64,
-    /// Seconds of one tick.
-    period: f64,
-}
-
-impl Clock {
-    /// From one raw value to a later one; the counter may have wrapped once. A step back of up to half the range,
-    /// which overlapping queues can show, is no time at all.
-    fn seconds(&self, from: u64, to: u64) -> f64 {
-        let ticks = to.wrapping_sub(from) & self.mask;
-        if ticks > self.mask / 2 { 0.0 } else { ticks as f64 * self.period }
-    }
-
-    /// Turns begin and end of each pass into times.
-    fn fill(&self, results: &[[u64; 2]], times: &mut FrameTimes) {
-        let pairs = || results.chunks_exact(2).map(|pair| (pair[0][0], pair[1][0]));
-        times.passes.clear();
-        times.passes.extend(pairs().map(|(begin, end)| self.seconds(begin, end)));
-        times.sum = times.passes.iter().sum();
-        let start = results.first().map_or(0, |first| first[0]);
-        times.span = pairs().map(|(_, end)| self.seconds(start, end)).fold(0.0, f64::max);
-    }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    Some((sorted[last / 2] + sorted[last.div_ceil(2)]) / 2.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wrapped_counters_and_overlap_give_true_times() {
-        let clock = Clock { mask: mask(36), period: 1e-9 };
-        let near_end = (1 << 36) - 100;
-        let results = [[near_end, 1], [900, 1], [400, 1], [1400, 1]];
-        let mut times = FrameTimes { frame: 0, passes: Vec::new(), span: 0.0, sum: 0.0 };
-        clock.fill(&results, &mut times);
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} against {b}");
-        near(times.passes[0], 1000e-9);
-        near(times.passes[1], 1000e-9);
-        near(times.sum, 2000e-9);
-        near(times.span, 1500e-9);
-        near(clock.seconds(500, 499), 0.0);
-        assert_eq!((mask(64), mask(0), mask(1)), (u64::MAX, 0, 1));
-    }
-
-    #[test]
-    fn medians_of_even_and_odd_counts() {
-        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), Some(2.0));
-        assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), Some(2.5));
-        assert_eq!(median([].into_iter()), None);
     }
 }
