@@ -1,6 +1,6 @@
 //! Developer commands, run as `cargo run -p xtask -- COMMAND`.
 
-mod chapel;
+mod cloister;
 #[cfg(test)]
 mod common_tests;
 mod compile;
@@ -36,8 +36,8 @@ enum Command {
         #[arg(long, value_name = "DIR", conflicts_with = "check")]
         debug_set: Option<PathBuf>,
     },
-    /// Make assets/mesh/chapel.glb, the demo scene's building, from assets/mesh/nave.glb
-    Chapel,
+    /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
+    Cloister,
 }
 
 /// The workspace this command was built in.
@@ -53,7 +53,7 @@ fn shader_root() -> PathBuf {
 fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
-        Command::Chapel => chapel::make(&workspace().join("assets")),
+        Command::Cloister => cloister::make(&workspace().join("assets")),
         Command::Shaders { room, debug_set: Some(folder), .. } => {
             debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)
         }

@@ -76,6 +76,11 @@ impl Mesh {
         (b - a).cross(c - a).normalize_or_zero()
     }
 
+    /// Mean of a triangle's corners.
+    pub fn centre(&self, triangle: &[u32; 3]) -> Vec3 {
+        triangle.iter().map(|&index| self.positions[index as usize]).sum::<Vec3>() / 3.0
+    }
+
     /// Box around some triangles.
     pub fn bounds(&self, triangles: &[[u32; 3]]) -> (Vec3, Vec3) {
         let corners = triangles.iter().flatten().map(|&index| self.positions[index as usize]);

@@ -1,8 +1,8 @@
-//! Makes `assets/mesh/chapel.glb`, the demo scene's building, from `assets/mesh/nave.glb`.
+//! Makes `assets/mesh/cloister.glb`, the demo scene's building, from `assets/mesh/nave.glb`.
 //!
-//! The nave is one white mesh without a camera. This splits it by shape into floor, walls, vault,
-//! columns, ribs, window frames, wood and altar, gives each a material, refines the long boxes (light
-//! is stored per vertex), and adds a plinth and a camera.
+//! The nave is one white mesh without a camera. This keeps the connected pieces that stand without walls and
+//! vault (floor, columns, arches, ribs, altar), gives each a material, refines what needs it (light is stored
+//! per vertex), and adds a plinth and a camera.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -14,8 +14,8 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 
 /// Where the camera stands and what it looks at, metres.
-const EYE: Vec3 = Vec3::new(1.3, 1.75, -7.4);
-const TARGET: Vec3 = Vec3::new(0.0, 2.3, 2.0);
+const EYE: Vec3 = Vec3::new(1.9, 1.35, -5.1);
+const TARGET: Vec3 = Vec3::new(-0.1, 1.75, 0.0);
 
 /// A part of the building.
 struct Part {
@@ -31,18 +31,15 @@ const fn part(name: &'static str, base_colour: [f32; 3], roughness: f32, longest
     Part { name, base_colour, roughness, longest_edge }
 }
 
-const PARTS: [Part; 8] = [
-    part("floor", [0.34, 0.29, 0.25], 0.5, 1.0),
-    part("wall", [0.66, 0.60, 0.52], 0.9, 1.0),
-    part("vault", [0.72, 0.68, 0.62], 0.9, 1.0),
-    part("column", [0.58, 0.51, 0.43], 0.8, 1.0),
-    part("rib", [0.55, 0.47, 0.40], 0.8, 1.0),
-    part("frame", [0.50, 0.45, 0.40], 0.8, 1.0),
-    part("wood", [0.27, 0.15, 0.08], 0.6, 0.35),
-    part("altar", [0.76, 0.74, 0.70], 0.4, 0.2),
+const PARTS: [Part; 5] = [
+    part("floor", [0.36, 0.31, 0.27], 0.5, 0.3),
+    part("column", [0.58, 0.51, 0.43], 0.8, 0.5),
+    part("arch", [0.62, 0.55, 0.47], 0.8, 0.5),
+    part("rib", [0.55, 0.47, 0.40], 0.8, 0.5),
+    part("altar", [0.76, 0.74, 0.70], 0.4, 0.1),
 ];
 
-/// Reads `nave.glb` below `assets` and writes `chapel.glb` beside it.
+/// Reads `nave.glb` below `assets` and writes `cloister.glb` beside it.
 pub fn make(assets: &Path) -> Result<(), Error> {
     let nave = Mesh::read(&assets.join("mesh/nave.glb"))?;
     let mut parts: Vec<Mesh> = PARTS.iter().map(|_| Mesh::default()).collect();
@@ -50,34 +47,30 @@ pub fn make(assets: &Path) -> Result<(), Error> {
     for component in components.values() {
         let (low, high) = nave.bounds(component);
         for triangle in component {
-            let part = classify(&nave, triangle, component.len(), low, high);
-            parts[part].push_triangle(&nave, triangle);
+            if let Some(part) = classify(&nave, triangle, component.len(), low, high) {
+                parts[part].push_triangle(&nave, triangle);
+            }
         }
     }
     let refined: Vec<Mesh> =
         parts.iter().zip(&PARTS).map(|(mesh, part)| mesh.refined(part.longest_edge)).collect();
     let plinth = Mesh::block(Vec3::new(-0.5, 0.0, -2.0), Vec3::new(0.5, 0.9, -1.0)).refined(0.12);
-    write(&assets.join("mesh/chapel.glb"), &refined, &plinth)
+    write(&assets.join("mesh/cloister.glb"), &refined, &plinth)
 }
 
-/// The material of one triangle: by the size of the connected piece it belongs to, and within the
-/// shell (the one piece as long as the hall) by where it faces.
-fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3) -> usize {
+/// The part one triangle belongs to: by the size of its connected piece, and within the shell (the one piece
+/// as long as the hall) by where it faces. `None` for walls, vault and pews.
+fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3) -> Option<usize> {
     let extent = high - low;
-    let part = match size {
-        10_000.. => match nave.face_normal(triangle).y {
-            up if up > 0.9 => "floor",
-            up if up < -0.15 => "vault",
-            _ => "wall",
-        },
-        2000..10_000 => "wall",
+    let name = match size {
+        10_000.. if nave.face_normal(triangle).y > 0.9 && nave.centre(triangle).y < 0.5 => "floor",
         1000..2000 => "column",
         600..1000 => "rib",
-        100..600 => "frame",
-        _ if low.y > 0.3 && extent.z > 0.9 => "altar",
-        _ => "wood",
+        100..600 => "arch",
+        0..100 if extent.z > 0.9 => "altar",
+        _ => return None,
     };
-    PARTS.iter().position(|known| known.name == part).unwrap_or(0)
+    PARTS.iter().position(|part| part.name == name)
 }
 
 fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
@@ -124,7 +117,7 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
     let yaw = f32::atan2(-towards.x, -towards.z);
     let rotation = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(towards.y.asin());
     let document = json!({
-        "asset": {"version": "2.0", "generator": "xtask chapel", "extras": {"licence": "CC0"}},
+        "asset": {"version": "2.0", "generator": "xtask cloister", "extras": {"licence": "CC0"}},
         "scene": 0,
         "scenes": [{"nodes": [0, 1, 2]}],
         "nodes": [
