@@ -49,7 +49,7 @@ impl Kernel {
 }
 
 /// Little-endian words of a module's bytes.
-fn words(bytes: &[u8]) -> Vec<u32> {
+pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }
 
@@ -225,6 +225,14 @@ pub(crate) fn vertices(settings: &Settings, source: Source) -> Kernel {
         bindings: vertex_bindings(settings, source),
         push_constant_size: CHUNK,
     }
+}
+
+/// Vertices of one workgroup of that kernel. Where one light is for all, an invocation makes two colours: loading
+/// each coefficient of the light once for both is what makes it as fast as its bytes can be moved.
+#[must_use]
+pub(crate) fn vertices_per_workgroup(settings: &Settings, source: Source) -> u32 {
+    let one_light = settings.light == LightKind::Uniform && settings.output == Output::Colour;
+    if one_light && source == Source::Baked { 2 * WORKGROUP } else { WORKGROUP }
 }
 
 /// The fragment kernel of the packed rectangle; its vertex stage is [`rectangle_vertex`].

@@ -48,6 +48,7 @@ mod record;
 pub mod reference;
 mod relight;
 mod resident;
+pub mod rivals;
 mod rotation;
 mod settings;
 mod stage;

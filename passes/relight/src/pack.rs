@@ -26,11 +26,11 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// Every layout, the default first.
+    /// Every layout.
     pub const ALL: [Self; 4] = [Self::Planes, Self::Vertices, Self::VertexBlocks, Self::BlockPlanes];
 
     /// The layout the pass uses, chosen by measurement. The others are kept as its rivals.
-    pub const DEFAULT: Self = Self::Planes;
+    pub const DEFAULT: Self = Self::BlockPlanes;
 
     /// Coefficients that lie together: one word, or a block of four.
     fn group(self, storage: Storage) -> usize {

@@ -167,7 +167,7 @@ impl Stage {
             Work::Vertices(chunks) => chunks.iter().try_for_each(|chunk| {
                 recorder.bind_compute(&chunk.pipeline, &chunk_bindings(&chunk.bound, bindings)?)?;
                 recorder.push_constants(&chunk.constants)?;
-                recorder.dispatch([chunk.constants.vertex_count.div_ceil(WORKGROUP), 1, 1])
+                recorder.dispatch([chunk.groups, 1, 1])
             }),
             Work::Rectangle(chunks) => draw_rectangle(recorder, chunks, bindings),
             Work::Copy { size } => {

@@ -137,6 +137,8 @@ pub(crate) struct ChunkWork<P> {
     pub pipeline: P,
     pub bound: Vec<Bound>,
     pub constants: ChunkConstants,
+    /// Workgroups of a dispatch; a draw has none.
+    pub groups: u32,
 }
 
 /// The push constants of `chunk.glsl`.

@@ -41,12 +41,13 @@ impl Relight {
                     (range.offset / 16 / u64::from(RECTANGLE_WIDTH)) as u32 + chunk.first / RECTANGLE_WIDTH;
                 let constants =
                     ChunkConstants { vertex_count: chunk.count, stride: stride(chunk), first_row };
+                let groups = chunk.count.div_ceil(kernels::vertices_per_workgroup(&self.settings, source));
                 match pipeline.clone() {
                     VertexPipeline::Compute(pipeline) => {
-                        compute.push(ChunkWork { pipeline, bound, constants })
+                        compute.push(ChunkWork { pipeline, bound, constants, groups });
                     }
                     VertexPipeline::Rectangle(pipeline) => {
-                        rectangle.push(ChunkWork { pipeline, bound, constants })
+                        rectangle.push(ChunkWork { pipeline, bound, constants, groups: 0 });
                     }
                 }
             }

@@ -36,7 +36,8 @@ fn rotations_agree_with_the_reference() {
 #[test]
 fn refused_rows_leave_the_others() {
     with_bench(|bench| {
-        let row = |order, x| RotateRow { order, f: vec![1.0; 4], rotation: DQuat::from_xyzw(x, 0.0, 0.0, 0.0) };
+        let row =
+            |order, x| RotateRow { order, f: vec![1.0; 4], rotation: DQuat::from_xyzw(x, 0.0, 0.0, 0.0) };
         let results = sh_rotate(bench, &[row(2, 0.0), row(2, 1.0), row(7, 1.0), row(3, 1.0)]).unwrap();
         assert!(results[0].as_ref().unwrap_err().to_string().contains("quaternion"));
         assert!(results[1].is_ok());
@@ -84,7 +85,8 @@ fn environments_agree_with_the_reference() {
         let mut numbers = Numbers::new(3);
         for (width, height, peak) in MAPS {
             let count = (width * height) as usize;
-            let mut texels: Vec<[f32; 3]> = numbers.rgb(count).into_iter().map(|rgb| rgb.map(|c| c + 1.0)).collect();
+            let mut texels: Vec<[f32; 3]> =
+                numbers.rgb(count).into_iter().map(|rgb| rgb.map(|c| c + 1.0)).collect();
             if let Some((x, y)) = peak {
                 texels[(y * width + x) as usize] = [1e5, 8e4, 5e4];
             }

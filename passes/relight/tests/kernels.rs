@@ -1,7 +1,8 @@
 //! Every kernel's bindings, push constants and workgroup as stated in Rust, against reflection of its module.
 
 use airglow_gpu::ash::vk::ShaderStageFlags;
-use airglow_relight::kernels;
+use airglow_relight::rivals::Task;
+use airglow_relight::{kernels, rivals};
 use airglow_tests::reflect::Module;
 
 #[test]
@@ -20,5 +21,14 @@ fn every_module_declares_what_is_stated() {
         if module.stage == ShaderStageFlags::COMPUTE && !kernel.name.starts_with("relight environment") {
             assert_eq!(module.workgroup, [kernels::WORKGROUP, 1, 1], "{}", kernel.name);
         }
+    }
+}
+
+#[test]
+fn every_rival_declares_what_is_stated() {
+    for rival in rivals::all().iter().filter(|rival| rival.task != Task::Copy) {
+        let module = Module::read(rival.spirv()).unwrap_or_else(|error| panic!("{}: {error}", rival.name()));
+        module.assert_bindings(&rival.bindings());
+        assert_eq!(module.workgroup, [rival.workgroup, 1, 1], "{}", rival.name());
     }
 }

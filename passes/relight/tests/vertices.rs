@@ -40,7 +40,8 @@ impl Input {
         let count = settings.coefficients();
         let vertices = self.vectors.len() / count;
         let values = self.run(bench, settings, limits);
-        let uniform = reference::light(settings.order, &wide_rgb(&self.light), self.turn, self.rotation).unwrap();
+        let uniform =
+            reference::light(settings.order, &wide_rgb(&self.light), self.turn, self.rotation).unwrap();
         let tensor = TripleProduct::new(settings.order).unwrap();
         let tolerance = if settings.storage == Storage::F16 { 1e-3 } else { 1e-5 };
         let stride = settings.output_bytes() as usize / 4;
@@ -67,7 +68,11 @@ impl Input {
             let actual = &values[vertex * stride..][..stride];
             for (i, expected) in expected.iter().flatten().enumerate() {
                 let error = (f64::from(actual[i]) - expected).abs() / scale;
-                assert!(error < tolerance, "{settings:?} vertex {vertex}: {} and {expected}: {error}", actual[i]);
+                assert!(
+                    error < tolerance,
+                    "{settings:?} vertex {vertex}: {} and {expected}: {error}",
+                    actual[i]
+                );
                 worst = worst.max(error);
             }
         }
@@ -125,7 +130,8 @@ fn light_of_each_vertex_and_visibility_agree_with_the_reference() {
 #[test]
 fn incident_radiance_from_half_floats_and_from_dynamic_visibility_alone() {
     with_bench(|bench| {
-        let settings = Settings { output: Output::Incident, visibility: true, order: 3, ..Settings::default() };
+        let settings =
+            Settings { output: Output::Incident, visibility: true, order: 3, ..Settings::default() };
         let input = Input::new(3, 90);
         input.check(bench, Settings { storage: Storage::F16, visibility: false, ..settings }, None);
         for light in [LightKind::Uniform, LightKind::Vertex] {
@@ -156,7 +162,8 @@ fn both_methods_give_the_same_bits() {
                     for visibility in [false, true] {
                         let settings = Settings { order, storage, light, visibility, ..Settings::default() };
                         let compute = input.run(bench, settings, None);
-                        let fragment = input.run(bench, Settings { method: Method::Fragment, ..settings }, None);
+                        let fragment =
+                            input.run(bench, Settings { method: Method::Fragment, ..settings }, None);
                         let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
                         assert_eq!(bits(&compute), bits(&fragment), "{settings:?}");
                         assert_eq!(bits(&compute), bits(&input.run(bench, settings, None)), "a second run");

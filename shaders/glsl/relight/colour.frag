@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Renders to a vertex array as the papers did: each pixel of a packed rectangle is one vertex, row after row; the
 // image is then copied into the vertex buffer.
 

@@ -10,16 +10,32 @@
 
 #include "relight/light.glsl"
 
+// Adds the terms of one block of four coefficients; `light` is zero past the last.
+vec3 add_block(vec3 colour, vec4 t, vec3 light[4])
+{
+    precise vec3 sum = colour;
+    sum = fma(vec3(t.x), light[0], sum);
+    sum = fma(vec3(t.y), light[1], sum);
+    sum = fma(vec3(t.z), light[2], sum);
+    sum = fma(vec3(t.w), light[3], sum);
+    return sum;
+}
+
+void light_block(uint vertex, uint block, out vec3 light[4])
+{
+    [[unroll]] for (uint i = 0u; i < 4u; ++i) {
+        uint index = 4u * block + i;
+        light[i] = index < uint(COEFFICIENTS) ? light_coefficient(vertex, min(index, uint(COEFFICIENTS - 1))) : vec3(0.0);
+    }
+}
+
 vec3 relight_colour(uint vertex)
 {
-    precise vec3 sum = vec3(0.0);
-    for (uint block = 0u; block < uint(BLOCKS); ++block) {
-        vec4 t = transfer_block(vertex, block);
-        uint first = 4u * block;
-        sum = fma(vec3(t.x), light_coefficient(vertex, first), sum);
-        if (first + 1u < uint(COEFFICIENTS)) { sum = fma(vec3(t.y), light_coefficient(vertex, first + 1u), sum); }
-        if (first + 2u < uint(COEFFICIENTS)) { sum = fma(vec3(t.z), light_coefficient(vertex, first + 2u), sum); }
-        if (first + 3u < uint(COEFFICIENTS)) { sum = fma(vec3(t.w), light_coefficient(vertex, first + 3u), sum); }
+    vec3 sum = vec3(0.0);
+    [[unroll]] for (uint block = 0u; block < uint(BLOCKS); ++block) {
+        vec3 light[4];
+        light_block(vertex, block, light);
+        sum = add_block(sum, transfer_block(vertex, block), light);
     }
     return sum;
 }
