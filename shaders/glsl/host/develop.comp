@@ -4,7 +4,7 @@
 // Develops the picture: averages the samples of each pixel, once scene-linear and once exposed, tone-mapped and
 // encoded. Samples are averaged after the tone map, so that an edge against a bright sky stays smooth.
 
-#include "host/tone_map.glsl"
+#include "common/tone_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
