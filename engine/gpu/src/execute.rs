@@ -96,11 +96,11 @@ impl Execution {
         }
         barriers(plan.acquires())?;
         for (index, step) in plan.steps().iter().enumerate() {
+            if let Some(timing) = timing.as_deref_mut() {
+                timing.begin_pass(command_buffer, index);
+            }
             barriers(&step.barriers)?;
             recorder.labelled(&step.name, |recorder| {
-                if let Some(timing) = timing.as_deref_mut() {
-                    timing.begin_pass(command_buffer, index);
-                }
                 let passed = (step.payload)(recorder, &resources);
                 let ended = recorder.end_pass();
                 if let Some(timing) = timing.as_deref_mut() {

@@ -1,7 +1,8 @@
 //! Device time of every pass, from timestamps in a ring that never stalls.
 //!
-//! A frame's timestamps are read once the host has begun the frame that makes it known to be done; nothing waits. A pass is timed from when the device reaches it behind its barriers to when all its work is
-//! done, so passes that overlap have a sum above the span.
+//! A frame's timestamps are read once the host has begun the frame that makes it known to be done; nothing waits. A
+//! pass is timed from when all that was recorded before it is done to when its own work is done, its barriers
+//! included.
 
 use crate::clock::{Clock, mask, median};
 use crate::context::Context;
@@ -146,8 +147,14 @@ impl Timing {
         Ok(())
     }
 
+    /// Before the pass's barriers: what was recorded earlier is done when the device writes it.
     pub(crate) fn begin_pass(&self, command_buffer: vk::CommandBuffer, pass: usize) {
-        self.write(command_buffer, vk::PipelineStageFlags2::TOP_OF_PIPE, 2 * pass);
+        self.write(command_buffer, vk::PipelineStageFlags2::ALL_COMMANDS, 2 * pass);
+        // Depends on nothing, so a GPU does nothing. lavapipe keeps timestamps with its draws and runs dispatches at
+        // once: without this it would write the begin of a dispatch after its end.
+        let nothing = vk::DependencyInfo::default();
+        // SAFETY: a recording command buffer outside rendering.
+        unsafe { self.shared.device().cmd_pipeline_barrier2(command_buffer, &nothing) };
     }
 
     pub(crate) fn end_pass(&self, command_buffer: vk::CommandBuffer, pass: usize) {
