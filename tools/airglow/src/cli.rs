@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, compare, devices, eval, plan, render};
+use crate::commands::{bake, compare, devices, eval, explain, plan, render, report};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -56,5 +56,7 @@ pub enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
     Plan(plan::Arguments),
+    Report(report::Arguments),
+    Explain(explain::Arguments),
     Eval(eval::Arguments),
 }

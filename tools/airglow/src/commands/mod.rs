@@ -4,8 +4,10 @@ pub mod bake;
 pub mod compare;
 pub mod devices;
 pub mod eval;
+pub mod explain;
 pub mod plan;
 pub mod render;
+pub mod report;
 pub mod scene;
 
 use crate::cli::{Cli, Command};
@@ -21,6 +23,8 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Render(arguments) => render::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
         Command::Plan(arguments) => plan::run(&arguments, global, output),
+        Command::Explain(arguments) => explain::run(&arguments, global, output),
+        Command::Report(arguments) => report::run(&arguments, global, output),
         Command::Eval(arguments) => eval::run(&arguments, global, output),
     }
 }

@@ -1,12 +1,15 @@
 //! The options of every command that takes a scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use airglow_scene::{Quality, Scene, Shadow, Storage};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
+
+/// Where bakes are kept, unless told otherwise.
+const CACHE: &str = ".cache/airglow";
 
 /// A scene, and what its light transport is computed with.
 #[derive(Clone, Debug, Args)]
@@ -30,7 +33,7 @@ pub struct SceneOptions {
     #[arg(long, value_enum)]
     pub shadow: Option<ShadowName>,
     /// Folder of baked transfer.
-    #[arg(long, value_name = "FOLDER", default_value = ".cache/airglow")]
+    #[arg(long, value_name = "FOLDER", default_value = CACHE)]
     pub cache: PathBuf,
 }
 
@@ -55,6 +58,19 @@ pub enum ShadowName {
 }
 
 impl SceneOptions {
+    /// A scene as its file says, lit by another environment if one is named.
+    pub fn plain(scene: &Path, environment: Option<&Path>) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            environment: environment.map(Path::to_owned),
+            order: None,
+            rays: None,
+            storage: None,
+            shadow: None,
+            cache: PathBuf::from(CACHE),
+        }
+    }
+
     /// Loads the scene, repeats its warnings, and applies the options that override it.
     pub fn load(&self, output: &Output) -> Outcome<Scene> {
         let mut scene = airglow_scene::load(&self.scene).map_err(Failure::input)?;

@@ -6,5 +6,6 @@ pub mod interleave;
 pub mod model;
 pub mod pareto;
 pub mod plot;
+pub mod relight;
 pub mod table;
 pub mod write;

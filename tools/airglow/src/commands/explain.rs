@@ -1,0 +1,146 @@
+//! `airglow explain`: why a scene is lit with the settings it is lit with.
+
+use airglow::relight::{Relight, Settings};
+use airglow_scene::{Quality, Scene, Shadow, Storage};
+use clap::Args;
+use serde::Serialize;
+
+use crate::cli::Global;
+use crate::commands::report::Pass;
+use crate::commands::scene::SceneOptions;
+use crate::failure::Outcome;
+use crate::host::device;
+use crate::output::Output;
+use crate::report::model::{Curve, Machine, Point};
+use crate::report::relight::curves::Measurement;
+use crate::report::relight::workload::{Effort, Workload};
+
+/// Explain a pass's settings for a scene: what was chosen, its rivals, and the line of the curve that decided.
+///
+/// The curves are measured anew on this device with the scene's largest mesh, quickly; `airglow report` measures them
+/// with care.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  airglow explain relight assets/scenes/spot.toml")]
+pub struct Arguments {
+    /// The pass.
+    #[arg(value_enum)]
+    pass: Pass,
+    #[command(flatten)]
+    scene: SceneOptions,
+}
+
+#[derive(Serialize)]
+struct Explanation {
+    machine: Machine,
+    workload: String,
+    knobs: Vec<Knob>,
+}
+
+/// A knob: the scene's setting, what the curve would choose, and the curve.
+#[derive(Serialize)]
+struct Knob {
+    name: String,
+    setting: String,
+    source: String,
+    curve_chooses: String,
+    because: String,
+    rivals: Vec<Rival>,
+}
+
+#[derive(Serialize)]
+struct Rival {
+    setting: String,
+    milliseconds: Option<f64>,
+    memory: u64,
+    error_setting: Option<f64>,
+    error_model: Option<f64>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
+    let Pass::Relight = arguments.pass;
+    let scene = arguments.scene.load(output)?;
+    let effort = Effort::new(true);
+    let workload = Workload::new(&scene, &effort, output)?;
+    let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
+    let explanation = device::with(global, &requirements, |device| {
+        let measurement = Measurement { device, workload: &workload, effort: &effort, output };
+        let quality = &scene.quality;
+        let knobs = vec![
+            knob(measurement.order()?, quality.order.to_string(), stated(&scene, arguments, "order")),
+            knob(measurement.rays()?, format!("{} rays", quality.rays), stated(&scene, arguments, "rays")),
+            knob(measurement.storage()?, storage_name(quality), stated(&scene, arguments, "storage")),
+            knob(measurement.method()?, "compute".to_owned(), "the pass's default".to_owned()),
+        ];
+        Ok(Explanation { machine: device.machine(), workload: workload.description.clone(), knobs })
+    })?;
+    output.result(&explanation, |explanation| text(explanation, scene.quality.shadow))
+}
+
+fn storage_name(quality: &Quality) -> String {
+    if quality.storage == Storage::F16 { "f16" } else { "f32" }.to_owned()
+}
+
+/// Who chose a setting: the command line, the scene, or nobody.
+fn stated(scene: &Scene, arguments: &Arguments, knob: &str) -> String {
+    let options = &arguments.scene;
+    let (default, quality) = (Quality::default(), &scene.quality);
+    let (on_command_line, is_default) = match knob {
+        "order" => (options.order.is_some(), quality.order == default.order),
+        "rays" => (options.rays.is_some(), quality.rays == default.rays),
+        _ => (options.storage.is_some(), quality.storage == default.storage),
+    };
+    match (on_command_line, is_default) {
+        (true, _) => "the command line",
+        (false, true) => "the default",
+        (false, false) => "the scene file",
+    }
+    .to_owned()
+}
+
+fn knob(curve: Curve, setting: String, source: String) -> Knob {
+    let (curve_chooses, because) = curve
+        .chosen
+        .map_or(("nothing".to_owned(), "the curve has no model error".to_owned()), |c| (c.setting, c.reason));
+    let rivals = curve.points.iter().map(rival).collect();
+    Knob { name: curve.knob, setting, source, curve_chooses, because, rivals }
+}
+
+fn rival(point: &Point) -> Rival {
+    Rival {
+        setting: point.setting.clone(),
+        milliseconds: point.time().map(|time| time.median),
+        memory: point.memory,
+        error_setting: point.error.setting,
+        error_model: point.error.model,
+    }
+}
+
+fn text(explanation: &Explanation, shadow: Shadow) -> String {
+    let machine = &explanation.machine;
+    let mut text = format!("{}\n{} ({})\n", explanation.workload, machine.device, machine.driver);
+    if machine.software {
+        text.push_str("This device computes on the CPU: the order of rivals may differ on a GPU.\n");
+    }
+    text.push_str(&format!("shadows: {shadow:?}\n"));
+    for knob in &explanation.knobs {
+        let Knob { name, setting, source, curve_chooses, because, rivals } = knob;
+        text.push_str(&format!("\n{name}: {setting}, chosen by {source}\n"));
+        text.push_str(&format!("  the curve chooses {curve_chooses}: {because}\n"));
+        text.push_str("  setting          median ms     memory  setting error  model error\n");
+        for rival in rivals {
+            let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2e}"));
+            let mark = if rival.setting == *setting { "*" } else { " " };
+            text.push_str(&format!(
+                "{mark} {:14} {:>11} {:>10} {:>14} {:>12}\n",
+                rival.setting,
+                rival.milliseconds.map_or("-".to_owned(), |ms| format!("{ms:.4}")),
+                crate::report::html::bytes(rival.memory),
+                number(rival.error_setting),
+                number(rival.error_model)
+            ));
+        }
+    }
+    text
+}

@@ -1,0 +1,133 @@
+//! `airglow report`: a pass measured, as a page.
+
+use std::path::PathBuf;
+
+use airglow::relight::{Relight, Settings, Storage};
+use clap::{Args, ValueEnum};
+
+use crate::cli::Global;
+use crate::commands::scene::SceneOptions;
+use crate::failure::Outcome;
+use crate::host::device;
+use crate::output::Output;
+use crate::report::date::today;
+use crate::report::model::{Machine, Report};
+use crate::report::relight::curves::Measurement;
+use crate::report::relight::workload::{Effort, Workload};
+use crate::report::write;
+
+/// Measure a pass and write a report: error against time and memory for each of its knobs.
+///
+/// The folder gets `report.html`, which needs nothing beside it, the same as `report.json` with every raw sample,
+/// and `report.csv`. Rivals are timed in turn, round after round; two are called different only if the 95 % bootstrap
+/// interval of their paired ratio excludes 1.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  airglow report relight -o out/report
+  airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
+  airglow report --merge docs/llvmpipe.json --merge docs/h200.json -o out/both     overlay devices")]
+pub struct Arguments {
+    /// The pass.
+    #[arg(value_enum, default_value_t = Pass::Relight)]
+    pass: Pass,
+    /// The scene to light: a scene file or a glTF file.
+    #[arg(long, value_name = "SCENE", default_value = "assets/scenes/spot.toml")]
+    scene: PathBuf,
+    /// Light it by this equirectangular map instead.
+    #[arg(long, value_name = "FILE")]
+    environment: Option<PathBuf>,
+    /// Folder of the report.
+    #[arg(long, short = 'o', value_name = "FOLDER")]
+    output: PathBuf,
+    /// Fewer rays and rounds: enough to see the shape of the curves.
+    #[arg(long)]
+    quick: bool,
+    /// Measure nothing; overlay these `report.json` files instead. May be given several times.
+    #[arg(long, value_name = "FILE.json")]
+    merge: Vec<PathBuf>,
+}
+
+/// Passes that can be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Pass {
+    /// Relighting by precomputed radiance transfer.
+    Relight,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
+    let reports = if arguments.merge.is_empty() {
+        vec![measure(arguments, global, output)?]
+    } else {
+        let read = arguments.merge.iter().map(|path| write::read(path)).collect::<Outcome<Vec<_>>>()?;
+        read.into_iter().flatten().collect()
+    };
+    let paths = write::write(&arguments.output, &reports)?;
+    output.result(&paths, |paths| {
+        paths.iter().map(|path| format!("wrote {}", path.display())).collect::<Vec<_>>().join("\n")
+    })
+}
+
+fn measure(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    let scene = SceneOptions::plain(&arguments.scene, arguments.environment.as_deref()).load(output)?;
+    let effort = Effort::new(arguments.quick);
+    let workload = Workload::new(&scene, &effort, output)?;
+    let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
+    device::with(global, &requirements, |device| {
+        let measurement = Measurement { device, workload: &workload, effort: &effort, output };
+        let curves = vec![
+            measurement.order()?,
+            measurement.rays()?,
+            measurement.storage()?,
+            measurement.method()?,
+            measurement.shape(Storage::F32)?,
+            measurement.shape(Storage::F16)?,
+        ];
+        Ok(Report {
+            pass: "relight".to_owned(),
+            machine: device.machine(),
+            command: command(arguments, &device.machine()),
+            date: today(),
+            workload: workload.description.clone(),
+            remarks: remarks(&effort, &workload),
+            curves,
+        })
+    })
+}
+
+/// The command that makes this report again.
+fn command(arguments: &Arguments, machine: &Machine) -> String {
+    let environment = arguments
+        .environment
+        .as_ref()
+        .map_or(String::new(), |path| format!(" --environment {}", path.display()));
+    let quick = if arguments.quick { " --quick" } else { "" };
+    format!(
+        "airglow report relight --scene {}{environment} -o {}{quick} --device \"{}\"",
+        arguments.scene.display(),
+        arguments.output.display(),
+        machine.device
+    )
+}
+
+fn remarks(effort: &Effort, workload: &Workload) -> Vec<String> {
+    let rate = workload.bakes.last().map_or(0.0, |bake| bake.rays_per_second);
+    vec![
+        format!(
+            "Model error is against direct light traced with {} rays a vertex, half of them drawn from the environment; \
+             its own noise is the floor of that column.",
+            effort.truth_rays
+        ),
+        format!(
+            "The setting error of order and storage is against order 6 and of rays against {} rays. The largest bake \
+             ran at {:.2} million rays a second, all threads.",
+            effort.rays.last().copied().unwrap_or(0),
+            1e-6 * rate
+        ),
+        format!(
+            "Times are of {} vertices, the mesh's vectors repeated; {} rounds of all rivals in turn after {} rounds of \
+             warm-up.",
+            effort.vertices, effort.rounds.measured, effort.rounds.warm_up
+        ),
+    ]
+}

@@ -1,0 +1,72 @@
+//! The three errors of a setting, on all vertices of the workload.
+
+use airglow::relight::{Bench, Case, CaseLight, Relight, Settings, reference};
+use airglow_math::statistics::relative_l2;
+use glam::DQuat;
+
+use super::workload::{Workload, truncate};
+use crate::failure::{Failure, Outcome};
+use crate::report::model::Errors;
+
+/// How errors are measured, for the report.
+pub const NORM: &str = "arithmetic: largest |error| / (|t| |l|) of any vertex and channel; setting and model: relative L2 over all vertices and channels";
+
+/// The pass's colours of the workload's vertices with these settings and vectors of full order.
+pub fn colours(
+    bench: &Bench<'_>,
+    settings: Settings,
+    workload: &Workload,
+    vectors: &[f32],
+) -> Outcome<Vec<[f32; 3]>> {
+    let order = settings.order;
+    let vectors = truncate(vectors, order);
+    let light: Vec<[f32; 3]> = workload.light_of(order).iter().map(|rgb| rgb.map(|c| c as f32)).collect();
+    let mut relight = Relight::new(bench.context, settings).map_err(Failure::work)?;
+    let count = workload.vertex_count as u32;
+    let mesh = relight.add_mesh(bench.context, "workload", count, Some(&vectors)).map_err(Failure::work)?;
+    let light = CaseLight::Uniform(&light, DQuat::IDENTITY);
+    let case = Case { light, mesh, rotation: DQuat::IDENTITY, visibility: None };
+    let values = bench.results(&mut relight, &case).map_err(Failure::work)?;
+    Ok(values.as_chunks::<4>().0.iter().take(workload.vertex_count).map(|&[r, g, b, _]| [r, g, b]).collect())
+}
+
+/// Errors of `colours`, made with `order` and `vectors`, against f64, against the `converged` setting's colours, and
+/// against the ray-traced truth.
+pub fn of(
+    colours: &[[f32; 3]],
+    order: usize,
+    vectors: &[f32],
+    converged: &[[f32; 3]],
+    workload: &Workload,
+) -> Outcome<Errors> {
+    let relative = |truth: &[[f32; 3]]| relative_l2(&flat(colours), &flat(truth)).map_err(Failure::work);
+    Ok(Errors {
+        arithmetic: Some(arithmetic(colours, order, vectors, workload)),
+        setting: Some(relative(converged)?),
+        model: Some(relative(&workload.truth)?),
+    })
+}
+
+/// The largest |error| / (|t| |l|) of any vertex and channel against the f64 dot product of the same vectors.
+fn arithmetic(colours: &[[f32; 3]], order: usize, vectors: &[f32], workload: &Workload) -> f64 {
+    let light = workload.light_of(order);
+    let light_norms = [0, 1, 2].map(|c| light.iter().map(|rgb| rgb[c] * rgb[c]).sum::<f64>().sqrt());
+    let vectors = truncate(vectors, order);
+    let mut worst = 0.0_f64;
+    for (colour, vector) in colours.iter().zip(vectors.chunks_exact(order * order)) {
+        let transfer: Vec<f64> = vector.iter().map(|&value| f64::from(value)).collect();
+        let norm = transfer.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let truth = reference::colour(&transfer, light);
+        for channel in 0..3 {
+            let error = (f64::from(colour[channel]) - truth[channel]).abs();
+            if error > 0.0 {
+                worst = worst.max(error / (norm * light_norms[channel]));
+            }
+        }
+    }
+    worst
+}
+
+fn flat(colours: &[[f32; 3]]) -> Vec<f64> {
+    colours.iter().flatten().map(|&value| f64::from(value)).collect()
+}

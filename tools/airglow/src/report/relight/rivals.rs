@@ -1,0 +1,153 @@
+//! Settings timed against one another: each a plan of its own, one frame of each in turn.
+
+use airglow::relight::{Frame, Instance, Light, Method, Relight, Settings};
+use airglow::relight::rivals::{Rival as Contestant, Task};
+use airglow_gpu::{Execution, Imports, Record, Timing};
+use airglow_graph::{Access, Graph};
+use glam::DQuat;
+
+use super::workload::tile;
+use crate::failure::{Failure, Outcome};
+use crate::host::{device::Device, upload};
+use crate::output::Output;
+use crate::report::interleave::{self, Rounds};
+use crate::report::model::Counts;
+
+/// A plan that can be run and timed, and what it does each frame.
+pub struct Rival {
+    name: String,
+    execution: Execution,
+    imports: Imports,
+    timing: Timing,
+    /// Keeps meshes and kernels alive.
+    _relight: Option<Relight>,
+    counts: Counts,
+    memory: u64,
+}
+
+/// What was measured of a rival.
+pub struct Timed {
+    /// Its name.
+    pub name: String,
+    /// Device milliseconds of each round.
+    pub milliseconds: Vec<f64>,
+    /// Work of a frame.
+    pub counts: Counts,
+    /// Bytes of its buffers and images.
+    pub memory: u64,
+}
+
+/// Relighting of `vertices` vertices with `vectors` (repeated as needed) under uniform light: the rotation of the
+/// light and the kernel over the vertices.
+pub fn relight(
+    device: &Device<'_>,
+    name: impl Into<String>,
+    settings: Settings,
+    vectors: &[f32],
+    light: &[[f64; 3]],
+    vertices: usize,
+) -> Outcome<Rival> {
+    let context = device.context();
+    let mut relight = Relight::new(context, settings).map_err(Failure::work)?;
+    let tiled = tile(vectors, settings.order, vertices);
+    let mesh = relight.add_mesh(context, "rival", vertices as u32, Some(&tiled)).map_err(Failure::work)?;
+    let padded: Vec<[f32; 4]> = light.iter().map(pad).collect();
+    let light = device
+        .run(|recorder| upload::buffer(recorder, "light", &padded, Access::ComputeStorageRead))
+        .map_err(Failure::work)?;
+    let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    let state = Access::ComputeStorageRead;
+    let coefficients = graph.import_buffer("light", *light.desc(), state, state);
+    imports.buffer(&coefficients, &light);
+    let frame = Frame {
+        light: Light::Uniform { coefficients, rotation: DQuat::IDENTITY },
+        instances: vec![Instance::new(mesh)],
+        target: None,
+    };
+    let relit = relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
+    if let Some(results) = relit.results {
+        graph.export(results, Access::VertexBuffer);
+    }
+    let bytes = vertices as u64 * (settings.vector_bytes() + settings.output_bytes());
+    let rectangle = vertices.next_multiple_of(1024) as u64;
+    let fragment = settings.method == Method::Fragment;
+    let counts = Counts {
+        // The fragment method writes its image and copies it.
+        bytes: bytes + if fragment { 2 * 16 * rectangle } else { 0 },
+        invocations: if fragment { rectangle } else { vertices.next_multiple_of(64) as u64 } + 64,
+        dispatches: if fragment { 1 } else { 2 },
+        draws: u64::from(fragment),
+    };
+    let memory = bytes + if fragment { 16 * rectangle } else { 0 };
+    let (execution, timing) = prepare(device, graph)?;
+    Ok(Rival { name: name.into(), execution, imports, timing, _relight: Some(relight), counts, memory })
+}
+
+/// One of the pass's own contestants for the kernel over the vertices: a shape of it, a kernel that only moves the
+/// same bytes, or a copy of as many.
+pub fn contestant(device: &Device<'_>, contestant: &Contestant, vertices: usize) -> Outcome<Rival> {
+    let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    let count = vertices as u32;
+    contestant.add(device.context(), &mut graph, &mut imports, count).map_err(Failure::work)?;
+    let compute = contestant.task != Task::Copy;
+    let group = contestant.vertices * contestant.workgroup;
+    let counts = Counts {
+        bytes: contestant.bytes(count),
+        invocations: if compute { u64::from(count.div_ceil(group) * contestant.workgroup) } else { 0 },
+        dispatches: u64::from(compute),
+        draws: 0,
+    };
+    let (execution, timing) = prepare(device, graph)?;
+    let name = contestant.name();
+    Ok(Rival { name, execution, imports, timing, _relight: None, counts, memory: contestant.bytes(count) })
+}
+
+fn pad(&[r, g, b]: &[f64; 3]) -> [f32; 4] {
+    [r as f32, g as f32, b as f32, 0.0]
+}
+
+fn prepare(device: &Device<'_>, graph: Graph<Record>) -> Outcome<(Execution, Timing)> {
+    let context = device.context();
+    let plan = graph.compile(&device.limits()).map_err(Failure::work)?;
+    let timing = Timing::new(context, plan.steps().len() as u32, 0, 1).map_err(Failure::device)?;
+    Ok((Execution::prepare(context, plan).map_err(Failure::work)?, timing))
+}
+
+impl Rival {
+    /// One frame; device milliseconds of its passes, without uploads.
+    fn run(&mut self, device: &Device<'_>) -> Outcome<f64> {
+        device.frames(&mut self.execution, &self.imports, Some(&mut self.timing), 1, |_| Ok(()))?;
+        let Some(times) = self.timing.frames().last() else {
+            return Err(Failure::work(format!("{}: the device gave no timestamps", self.name)));
+        };
+        let counted = self.timing.passes().iter().zip(&times.passes);
+        let counted = counted.filter(|(name, _)| name.as_str() != "relight uploads");
+        Ok(1e3 * counted.map(|(_, seconds)| seconds).sum::<f64>())
+    }
+}
+
+/// Runs all rivals in turn, round after round.
+pub fn measure(
+    device: &Device<'_>,
+    what: &str,
+    mut rivals: Vec<Rival>,
+    rounds: Rounds,
+    output: &Output,
+) -> Outcome<Vec<Timed>> {
+    let frames = (rounds.warm_up + rounds.measured) * rivals.len();
+    let bar = output.progress(what, frames as u64, "frames");
+    let samples = interleave::measure(rounds, rivals.len(), |rival| {
+        bar.inc(1);
+        rivals[rival].run(device)
+    })?;
+    bar.finish_and_clear();
+    let timed = rivals.into_iter().zip(samples);
+    Ok(timed
+        .map(|(rival, milliseconds)| Timed {
+            name: rival.name,
+            milliseconds,
+            counts: rival.counts,
+            memory: rival.memory,
+        })
+        .collect())
+}
