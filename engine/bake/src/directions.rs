@@ -1,8 +1,7 @@
 //! The rays of a vertex, in the frame of its normal (+Z), and what each is worth.
 //!
 //! One set serves all vertices: a spherical Fibonacci lattice over the hemisphere (Marques et al. 2013), its
-//! heights spread by the sampling density, its order sorted so that neighbours in the list are neighbours on
-//! the sphere. A vertex turns it about its normal by an angle of its own.
+//! heights spread by the sampling density. A vertex turns it about its normal by an angle of its own.
 
 use airglow_math::MathError;
 use airglow_math::sh::{evaluate, zonal};
@@ -45,11 +44,10 @@ impl Directions {
     }
 
     /// The set whose density is q(s) = (1 - share) / 2π + share · cos / π.
-    fn with_cosine_share(settings: &Settings, share: f64) -> Result<Self, MathError> {
+    pub(crate) fn with_cosine_share(settings: &Settings, share: f64) -> Result<Self, MathError> {
         let (count, rays) = (settings.coefficient_count(), settings.rays as usize);
         let parts = if settings.visibility.is_some() { 2 } else { 1 };
         let width = (parts * count).next_multiple_of(LANES);
-        let directions = lattice(rays, share);
         let mut set = Self {
             local: Vec::with_capacity(rays),
             rows: vec![0.0; rays * width],
@@ -57,8 +55,8 @@ impl Directions {
             residual: open_hemisphere(settings.order, parts)?,
         };
         let mut basis = [0.0; MAX_COEFFICIENTS];
-        for (direction, row) in directions.iter().zip(set.rows.chunks_exact_mut(width)) {
-            evaluate(settings.order, *direction, &mut basis[..count])?;
+        for (direction, row) in lattice(rays, share).zip(set.rows.chunks_exact_mut(width)) {
+            evaluate(settings.order, direction, &mut basis[..count])?;
             let density = ((1.0 - share) * 0.5 + share * direction.z) / std::f64::consts::PI;
             let visibility_weight = 1.0 / (rays as f64 * density);
             let weights = [direction.z / std::f64::consts::PI * visibility_weight, visibility_weight];
@@ -104,34 +102,21 @@ fn hemisphere_factor(l: usize) -> f64 {
     2.0 * std::f64::consts::PI * integral
 }
 
-/// `count` directions with z > 0, neighbours together.
-fn lattice(count: usize, cosine_share: f64) -> Vec<DVec3> {
+/// `count` directions with z > 0.
+fn lattice(count: usize, cosine_share: f64) -> impl Iterator<Item = DVec3> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let mut directions: Vec<DVec3> = (0..count)
-        .map(|i| {
-            let z = height((i as f64 + 0.5) / count as f64, cosine_share);
-            let radius = (1.0 - z * z).max(0.0).sqrt();
-            let (sin, cos) = (std::f64::consts::TAU * (i as f64 * golden).fract()).sin_cos();
-            DVec3::new(radius * cos, radius * sin, z)
-        })
-        .collect();
-    directions.sort_by_cached_key(|direction| morton(*direction));
-    directions
+    (0..count).map(move |i| {
+        let z = height((i as f64 + 0.5) / count as f64, cosine_share);
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = (std::f64::consts::TAU * (i as f64 * golden).fract()).sin_cos();
+        DVec3::new(radius * cos, radius * sin, z)
+    })
 }
 
 /// Solves (1 - share) z + share z² = u for z in [0, 1].
 fn height(u: f64, share: f64) -> f64 {
     let linear = 1.0 - share;
     2.0 * u / (linear + (linear * linear + 4.0 * share * u).sqrt())
-}
-
-/// Place on a Z-order curve over the disc below the hemisphere.
-fn morton(direction: DVec3) -> u32 {
-    let spread = |x: f64| {
-        let cell = ((x * 0.5 + 0.5) * 1024.0) as u32;
-        (0..10).fold(0, |bits, k| bits | ((cell >> k & 1) << (2 * k)))
-    };
-    spread(direction.x) | spread(direction.y) << 1
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //!
 //! Sloan, Kautz, Snyder 2002 (diffuse, shadowed transfer), with the normalisation of Sun 2008 eq. 5.14: the
 //! vector of a vertex with normal N and visibility V is t = 1/π ∫ V(s) max(s·N, 0) y(s) ds.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
 mod analytic;

@@ -100,30 +100,21 @@ impl<'a> Occluders<'a> {
         self.scale
     }
 
-    /// Whether something blocks the segment, given in working coordinates. `last` remembers the blocker, which
-    /// is asked first: neighbouring rays mostly meet the same one.
+    /// Whether something blocks the segment, given in working coordinates.
     #[inline]
-    pub(crate) fn blocks(&self, segment: &Segment, last: &mut usize) -> bool {
-        if self.triangles.get(*last).is_some_and(|triangle| self.blocked_by(triangle, *last, segment)) {
-            return true;
-        }
+    pub(crate) fn blocks(&self, segment: &Segment) -> bool {
         if self.hierarchy.nodes.is_empty() {
             return false;
         }
         let ray = Ray::new(segment.origin, segment.direction, 0.0, segment.reach);
-        !self.hierarchy.ray_traverse_miss(ray, |_, id| {
-            if self.blocked_by(&self.triangles[id], id, segment) {
-                *last = id;
-                0.0
-            } else {
-                f32::INFINITY
-            }
-        })
+        let distance = |id| if self.blocked_by(id, segment) { 0.0 } else { f32::INFINITY };
+        !self.hierarchy.ray_traverse_miss(ray, |_, id| distance(id))
     }
 
     #[inline(always)]
-    fn blocked_by(&self, triangle: &Triangle, id: usize, segment: &Segment) -> bool {
-        triangle.meet(segment).is_some_and(|weights| self.sources.is_empty() || self.solid(id, weights))
+    fn blocked_by(&self, id: usize, segment: &Segment) -> bool {
+        let met = self.triangles[id].meet(segment);
+        met.is_some_and(|weights| self.sources.is_empty() || self.solid(id, weights))
     }
 
     #[cold]

@@ -37,8 +37,8 @@ impl Default for Settings {
 #[serde(rename_all = "lowercase")]
 pub enum BelowHorizon {
     /// V = the share of the cosine-weighted upper hemisphere that is free. An open vertex then has V = 1 and a
-    /// closed one V = 0, both exactly; over orders 2 to 6 its product with the clamped cosine is nearest to the
-    /// transfer vector.
+    /// closed one V = 0, both exactly, and the product with the clamped cosine is close to the transfer vector
+    /// at every order.
     Mean,
     /// V = 1: what other geometry blocks, without the vertex's own surface.
     Visible,

@@ -6,6 +6,9 @@
 //! as a control variate, t = S + a (I - Σ w_i y(s_i)) with a the free share of the rays, and then rotated: an
 //! open vertex gets the closed form and a closed one gets zero, both exactly.
 
+#[cfg(test)]
+mod study;
+
 use std::f64::consts::TAU;
 
 use glam::{DVec3, Mat3A, Mat4};
@@ -80,8 +83,7 @@ impl<'a> Vertices<'a> {
         let origin = self.surroundings[vertex].ray_origin(self.positions[vertex], normal.as_vec3());
         let reach = scale.length(self.settings.reach);
         let segment = Segment { origin: scale.apply(origin), direction: direction.as_vec3a(), reach };
-        let mut no_blocker_yet = usize::MAX;
-        !self.occluders.blocks(&segment, &mut no_blocker_yet)
+        !self.occluders.blocks(&segment)
     }
 
     /// Bakes consecutive vertices from `first`, as many as `transfer` holds vectors of; `visibility` is empty or
@@ -130,13 +132,13 @@ impl<'a> Vertices<'a> {
         let reach = scale.length(self.settings.reach);
         let frame = Mat3A::from(frame.matrix().as_mat3());
         let width = self.directions.width;
-        let (mut totals, mut free, mut last) = ([0.0; MAX_WIDTH], 0, usize::MAX);
+        let (mut totals, mut free) = ([0.0; MAX_WIDTH], 0);
         let batches = self.directions.local.chunks(BATCH).zip(self.directions.rows.chunks(BATCH * width));
         for (directions, rows) in batches {
             let mut sums = [0.0_f32; MAX_WIDTH];
             for (direction, row) in directions.iter().zip(rows.chunks_exact(width)) {
                 let segment = Segment { origin, direction: frame * *direction, reach };
-                if !self.occluders.blocks(&segment, &mut last) {
+                if !self.occluders.blocks(&segment) {
                     free += 1;
                     add(&mut sums[..width], row);
                 }

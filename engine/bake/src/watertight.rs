@@ -56,8 +56,7 @@ fn leaks(place: Mat4, rings: u32, towards: impl Fn([Vec3A; 3], &dyn Fn(Vec3A))) 
         towards(*triangle, &|target| {
             let segment = Segment { origin, direction: (target - origin).normalize(), reach: f32::INFINITY };
             count(0);
-            let mut no_blocker_yet = usize::MAX;
-            if !occluders.blocks(&segment, &mut no_blocker_yet) {
+            if !occluders.blocks(&segment) {
                 count(1);
             }
             // The triangles around the one aimed at; the whole mesh where few rays are cast.

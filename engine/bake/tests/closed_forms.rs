@@ -13,6 +13,7 @@ use glam::{DVec3, Mat4, Quat, Vec3};
 const BLOCKED: Option<BelowHorizon> = Some(BelowHorizon::Blocked);
 
 /// ∫ weight(cos θ) y(s) over a rectangle of angles about +Z, by Gauss-Legendre quadrature.
+#[expect(clippy::unwrap_used, reason = "a test helper")]
 fn integral(order: usize, theta: [f64; 2], phi: [f64; 2], weight: impl Fn(f64) -> f64) -> Vec<f64> {
     let nodes = gauss_legendre(48).unwrap();
     let map = |[a, b]: [f64; 2], t: f64| 0.5 * (a + b) + 0.5 * (b - a) * t;
