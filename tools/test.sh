@@ -36,6 +36,7 @@ step() {
 
 step formatting cargo fmt --all --check
 step shaders cargo run --locked --quiet -p xtask -- shaders --check
+step portability cargo run --locked --quiet -p xtask -- portability --check
 step clippy cargo clippy --locked --workspace --all-targets -- -D warnings
 step documentation env RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --lib --no-deps
 step tests cargo test --locked --workspace --no-fail-fast

@@ -34,6 +34,9 @@ pub enum Error {
         "{0} of the SPIR-V files are not what their GLSL compiles to; run `cargo run -p xtask -- shaders`"
     )]
     Stale(usize),
+    /// The committed table of translations is not what the modules give.
+    #[error("{0} is not what the modules give; run `cargo run -p xtask -- portability`")]
+    StaleTable(PathBuf),
     /// No room of the manifest has the name asked for.
     #[error("no entry of the manifest lies in a room named `{0}`")]
     NoSuchRoom(String),

@@ -6,9 +6,12 @@ mod common_tests;
 mod compile;
 mod debug_set;
 mod error;
+mod files;
 mod manifest;
 mod mesh;
+mod portability;
 mod shaders;
+mod translate;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -24,7 +27,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Compile shaders/glsl/manifest.toml into shaders/spirv
+    /// Compile shaders/glsl/manifest.toml into shaders/spirv, and write the table of `portability`
     Shaders {
         /// Write nothing; fail with a list when the committed SPIR-V differs from a fresh compile
         #[arg(long)]
@@ -36,13 +39,19 @@ enum Command {
         #[arg(long, value_name = "DIR", conflicts_with = "check")]
         debug_set: Option<PathBuf>,
     },
+    /// Write docs/shader-portability.md: which shader naga translates to WGSL, HLSL and MSL, and why not
+    Portability {
+        /// Write nothing; fail when the committed table differs
+        #[arg(long)]
+        check: bool,
+    },
     /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
     Cloister,
 }
 
 /// The workspace this command was built in.
 fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Where includes and the manifest's files are looked up.
@@ -54,11 +63,13 @@ fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
+        Command::Portability { check } => portability::run(&workspace(), check),
         Command::Shaders { room, debug_set: Some(folder), .. } => {
             debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)
         }
         Command::Shaders { check, room, debug_set: None } => {
-            shaders::run(&glsl, &workspace().join("shaders/spirv"), room.as_deref(), check)
+            shaders::run(&glsl, &workspace().join("shaders/spirv"), room.as_deref(), check)?;
+            if check { Ok(()) } else { portability::run(&workspace(), false) }
         }
     }
 }

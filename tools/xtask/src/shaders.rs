@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::compile;
 use crate::error::Error;
+use crate::files;
 use crate::manifest::{self, Module};
 
 /// The SPIR-V files below one folder, by relative path.
@@ -120,16 +121,10 @@ fn compare(made: &Files, found: &Files) -> Vec<Difference> {
 /// Writes one file whole, or removes it when there is nothing to write.
 fn write(root: &Path, relative: &Path, bytes: Option<&Vec<u8>>) -> Result<(), Error> {
     let path = root.join(relative);
-    let put = || match bytes {
-        None => std::fs::remove_file(&path),
-        Some(bytes) => {
-            let partial = path.with_extension("partial");
-            std::fs::create_dir_all(path.parent().unwrap_or(root))?;
-            std::fs::write(&partial, bytes)?;
-            std::fs::rename(&partial, &path)
-        }
-    };
-    put().map_err(|source| Error::io(&path, source))
+    match bytes {
+        None => std::fs::remove_file(&path).map_err(|source| Error::io(&path, source)),
+        Some(bytes) => files::write_whole(&path, bytes),
+    }
 }
 
 #[cfg(test)]
