@@ -3,7 +3,10 @@
 use crate::access::State;
 use crate::compile;
 use crate::error::GraphError;
+use crate::extent::RelativeExtent;
 use crate::handle::{Buffer, Handle, Image, ImageRange, Kind, ResourceId};
+use crate::history::Half;
+use crate::options::{Limits, Options};
 use crate::pass::{Pass, PassBuilder, PassKind};
 use crate::plan::Plan;
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
@@ -24,47 +27,22 @@ pub struct LeftOut {
     pub would_return: String,
 }
 
-/// What the device and the host's queue allow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// The queue family the plan will be recorded for. An imported state on another family is acquired and
-    /// released; with `QUEUE_FAMILY_IGNORED` here, every named family counts as another one.
-    pub queue_family: u32,
-    /// Largest buffer in bytes (`maxBufferSize`).
-    pub max_buffer_size: u64,
-    /// Largest width or height of a 2D image in texels (`maxImageDimension2D`).
-    pub max_image_dimension_2d: u32,
-    /// Largest extent of a 3D image in texels (`maxImageDimension3D`).
-    pub max_image_dimension_3d: u32,
-    /// Most array layers (`maxImageArrayLayers`).
-    pub max_image_array_layers: u32,
-}
-
-impl Default for Limits {
-    /// The minima Vulkan 1.3 guarantees, on queue family 0.
-    fn default() -> Self {
-        Self {
-            queue_family: 0,
-            max_buffer_size: 1 << 30,
-            max_image_dimension_2d: 4096,
-            max_image_dimension_3d: 256,
-            max_image_array_layers: 256,
-        }
-    }
-}
-
 /// A resource as declared.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Hash)]
 pub(crate) struct Resource {
     pub name: String,
     pub desc: ResourceDesc,
     pub origin: Origin,
+    /// Which half of a history it is, if one.
+    pub half: Option<Half>,
+    /// What width and height follow, if anything.
+    pub relative: Option<RelativeExtent>,
     /// Version `i + 1` at index `i`; version 0 is what the resource held before.
     pub versions: Vec<Version>,
 }
 
 /// One write in the life of a resource.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Hash)]
 pub(crate) struct Version {
     /// The version it was written over.
     pub parent: u32,
@@ -73,7 +51,7 @@ pub(crate) struct Version {
 }
 
 /// A version that outlives the plan.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Hash)]
 pub(crate) struct Export {
     pub resource: ResourceId,
     pub version: u32,
@@ -83,7 +61,7 @@ pub(crate) struct Export {
 }
 
 /// Everything declared, without the payloads: what the compile phases work on.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Hash)]
 pub(crate) struct Declaration {
     pub resources: Vec<Resource>,
     pub passes: Vec<Pass>,
@@ -156,10 +134,17 @@ impl<R> Graph<R> {
         self.add(name, ResourceDesc::Image(desc), Origin::Transient)
     }
 
-    fn add<T: Kind>(&mut self, name: &str, desc: ResourceDesc, origin: Origin) -> Handle<T> {
+    pub(crate) fn add<T: Kind>(&mut self, name: &str, desc: ResourceDesc, origin: Origin) -> Handle<T> {
         let resource = ResourceId(u32::try_from(self.declaration.resources.len()).unwrap_or(u32::MAX));
         let name = unique(name, self.declaration.resources.iter().map(|resource| &resource.name));
-        self.declaration.resources.push(Resource { name, desc, origin, versions: Vec::new() });
+        self.declaration.resources.push(Resource {
+            name,
+            desc,
+            origin,
+            half: None,
+            relative: None,
+            versions: Vec::new(),
+        });
         Handle::new(resource, 0, ImageRange::WHOLE)
     }
 
@@ -197,6 +182,11 @@ impl<R> Graph<R> {
 
     /// Turns the declaration into a plan: the same declaration always gives the same plan, byte for byte.
     pub fn compile(self, limits: &Limits) -> Result<Plan<R>, GraphError> {
-        compile::compile(self, limits)
+        self.compile_with(limits, &Options::default())
+    }
+
+    /// [`compile`](Self::compile) with choices.
+    pub fn compile_with(self, limits: &Limits, options: &Options) -> Result<Plan<R>, GraphError> {
+        compile::compile(self, limits, options)
     }
 }

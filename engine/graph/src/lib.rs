@@ -36,19 +36,27 @@
 mod access;
 mod compile;
 mod error;
+mod extent;
 mod graph;
 mod handle;
+mod history;
+mod options;
 mod pass;
 mod plan;
 mod resource;
+mod topology;
 
 pub use access::{Access, State};
 pub use error::GraphError;
-pub use graph::{Graph, LeftOut, Limits};
+pub use extent::{ExtentBase, RelativeExtent};
+pub use graph::{Graph, LeftOut};
 pub use handle::{Buffer, Handle, Image, ImageRange, Kind, ResourceId};
+pub use history::History;
+pub use options::{Limits, Options};
 pub use pass::{PassBuilder, PassKind};
 pub use plan::{
-    Barriers, BufferBarrier, Cause, CullReason, Culled, ImageBarrier, Lifetime, Plan, PlanAccess,
-    PlanResource, Step,
+    Barriers, BufferBarrier, Cause, CullReason, Culled, ImageBarrier, Lifetime, Plan, PlanAccess, PlanBytes,
+    PlanExport, PlanHistory, PlanResource, Step,
 };
 pub use resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
+pub use topology::Topology;

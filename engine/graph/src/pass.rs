@@ -17,7 +17,7 @@ pub enum PassKind {
 }
 
 /// One use of one resource by a pass.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Hash)]
 pub(crate) struct Use {
     pub resource: ResourceId,
     /// The version used; for a write, the version written over.
@@ -32,7 +32,7 @@ pub(crate) struct Use {
 }
 
 /// A pass as declared.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Hash)]
 pub(crate) struct Pass {
     pub name: String,
     pub kind: PassKind,

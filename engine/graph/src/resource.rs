@@ -4,7 +4,7 @@ use crate::access::State;
 use ash::vk;
 
 /// A buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BufferDesc {
     /// Size in bytes, at least 1.
     pub size: u64,
@@ -20,7 +20,7 @@ impl BufferDesc {
 }
 
 /// An image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ImageDesc {
     /// Width, height and depth of mip 0 in texels, each at least 1. Depth above 1 makes a 3D image.
     pub extent: [u32; 3],
@@ -113,7 +113,7 @@ fn texel_bytes(format: vk::Format) -> Option<u32> {
 }
 
 /// A buffer's or an image's description.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ResourceDesc {
     /// A buffer.
     Buffer(BufferDesc),
@@ -144,7 +144,7 @@ impl ResourceDesc {
 }
 
 /// Where a resource comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Origin {
     /// The host's: found in `entry`, left in `exit`.
     Imported {

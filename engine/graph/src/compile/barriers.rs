@@ -1,11 +1,12 @@
-//! Phase 6: the barriers between epochs, from entry to exit, subresource by subresource.
+//! Phase 7: the barriers between epochs, from entry to exit, subresource by subresource.
 
 use super::coalesce::coalesce;
 use super::epochs::{Epoch, Slot, push};
-use super::history::contains;
+use super::lives::contains;
 use crate::access::State;
-use crate::graph::{Declaration, Limits};
+use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
+use crate::options::Limits;
 use crate::plan::{Barriers, BufferBarrier, Cause, ImageBarrier};
 use crate::resource::{Origin, ResourceDesc};
 use ash::vk::{AccessFlags2, ImageAspectFlags, ImageLayout, PipelineStageFlags2, QUEUE_FAMILY_IGNORED};

@@ -1,6 +1,6 @@
-//! Phase 4: passes that reach no export, no import and no side effect are left out, with the reason.
+//! Phase 5: passes that reach no export, no import and no side effect are left out, with the reason.
 
-use super::history::History;
+use super::lives::Lives;
 use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 use crate::plan::{CullReason, Culled};
@@ -12,46 +12,46 @@ pub(super) struct Cull {
     pub culled: Vec<Culled>,
 }
 
-pub(super) fn cull(declaration: &Declaration, history: &History) -> Cull {
+pub(super) fn cull(declaration: &Declaration, lives: &Lives) -> Cull {
     let mut alive = vec![false; declaration.passes.len()];
-    let mut needed = roots(declaration, history);
+    let mut needed = roots(declaration, lives);
     while let Some(pass) = needed.pop() {
         if std::mem::replace(&mut alive[pass], true) {
             continue;
         }
         for used in declaration.passes[pass].uses.iter().filter(|used| used.keeps) {
-            needed.extend(history.writers(used.resource, used.version, used.range));
+            needed.extend(lives.writers(used.resource, used.version, used.range));
         }
     }
     let dead = (0..alive.len()).filter(|pass| !alive[*pass]);
     let culled = dead
         .map(|pass| Culled {
             pass: declaration.passes[pass].name.clone(),
-            reason: reason(declaration, history, pass),
+            reason: reason(declaration, lives, pass),
         })
         .collect();
     Cull { alive, culled }
 }
 
 /// Passes needed for their own sake: side effects, and writers of what outlives the plan.
-fn roots(declaration: &Declaration, history: &History) -> Vec<usize> {
+fn roots(declaration: &Declaration, lives: &Lives) -> Vec<usize> {
     let passes = declaration.passes.iter().enumerate();
     let mut roots: Vec<usize> = passes.filter(|(_, pass)| pass.side_effect).map(|(i, _)| i).collect();
     for export in &declaration.exports {
-        roots.extend(history.writers(export.resource, export.version, export.range));
+        roots.extend(lives.writers(export.resource, export.version, export.range));
     }
     for (index, resource) in declaration.resources.iter().enumerate() {
         if let Origin::Imported { .. } = resource.origin {
             let (mips, layers) = resource.desc.subresources();
             let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
-            roots.extend(history.writers(ResourceId(index as u32), u32::MAX, whole));
+            roots.extend(lives.writers(ResourceId(index as u32), u32::MAX, whole));
         }
     }
     roots
 }
 
 /// Why nothing needs a pass that is not alive.
-fn reason(declaration: &Declaration, history: &History, pass: usize) -> CullReason {
+fn reason(declaration: &Declaration, lives: &Lives, pass: usize) -> CullReason {
     let writes = declaration.passes[pass].uses.iter().filter(|used| used.output.is_some());
     let mut written: Vec<ResourceId> = writes.map(|used| used.resource).collect();
     written.sort_unstable();
@@ -61,8 +61,8 @@ fn reason(declaration: &Declaration, history: &History, pass: usize) -> CullReas
     }
     let mut readers: Vec<usize> = Vec::new();
     for resource in &written {
-        let reads = history.life(*resource).reads.iter();
-        let of_this = reads.filter(|r| history.writers(*resource, r.version, r.range).contains(&pass));
+        let reads = lives.life(*resource).reads.iter();
+        let of_this = reads.filter(|r| lives.writers(*resource, r.version, r.range).contains(&pass));
         readers.extend(of_this.map(|read| read.pass));
     }
     readers.sort_unstable();
@@ -84,7 +84,7 @@ mod tests {
 
     fn run(graph: &mut Graph<()>) -> Result<Cull, GraphError> {
         validate(&mut graph.declaration, &Limits::default())?;
-        Ok(cull(&graph.declaration, &History::of(&graph.declaration)))
+        Ok(cull(&graph.declaration, &Lives::of(&graph.declaration)))
     }
 
     #[test]

@@ -1,20 +1,21 @@
-//! Phase 2: versions form one chain, nothing is read that nobody wrote, nothing exported is overwritten.
+//! Phase 3: versions form one chain, nothing is read that nobody wrote, nothing exported is overwritten.
 
-use super::history::History;
+use super::lives::Lives;
 use crate::error::GraphError;
 use crate::graph::{Declaration, Resource};
 use crate::handle::{ImageRange, ResourceId};
+use crate::history::Half;
 use crate::resource::Origin;
 use ash::vk;
 
-pub(super) fn hazards(declaration: &Declaration, history: &History) -> Result<(), GraphError> {
+pub(super) fn hazards(declaration: &Declaration, lives: &Lives) -> Result<(), GraphError> {
     for resource in &declaration.resources {
         check_chain(declaration, resource)?;
     }
     for pass in &declaration.passes {
         for used in pass.uses.iter().filter(|used| used.keeps) {
             if let Some((mip, layer)) =
-                first_unwritten(declaration, history, used.resource, used.version, used.range)
+                first_unwritten(declaration, lives, used.resource, used.version, used.range)
             {
                 return Err(GraphError::ReadOfNeverWritten {
                     resource: declaration.resources[used.resource.index()].name.clone(),
@@ -26,7 +27,8 @@ pub(super) fn hazards(declaration: &Declaration, history: &History) -> Result<()
             }
         }
     }
-    check_exports(declaration, history)
+    check_exports(declaration, lives)?;
+    check_histories(declaration, lives)
 }
 
 /// Version n + 1 must be written over version n.
@@ -68,7 +70,7 @@ fn check_chain(declaration: &Declaration, resource: &Resource) -> Result<(), Gra
 /// The first mip and layer of a range in which a version has no contents.
 fn first_unwritten(
     declaration: &Declaration,
-    history: &History,
+    lives: &Lives,
     resource: ResourceId,
     version: u32,
     range: ImageRange,
@@ -76,18 +78,19 @@ fn first_unwritten(
     let declared = &declaration.resources[resource.index()];
     let filled_before = match declared.origin {
         Origin::Transient => false,
+        _ if declared.half == Some(Half::Current) => false,
         Origin::Imported { entry, .. } => {
             !declared.desc.is_image() || entry.layout != vk::ImageLayout::UNDEFINED
         }
     };
     let mut at = range.subresources();
-    if filled_before { None } else { at.find(|at| history.writer(resource, version, *at).is_none()) }
+    if filled_before { None } else { at.find(|at| lives.writer(resource, version, *at).is_none()) }
 }
 
-fn check_exports(declaration: &Declaration, history: &History) -> Result<(), GraphError> {
+fn check_exports(declaration: &Declaration, lives: &Lives) -> Result<(), GraphError> {
     for export in &declaration.exports {
         let resource = &declaration.resources[export.resource.index()];
-        let unwritten = first_unwritten(declaration, history, export.resource, export.version, export.range);
+        let unwritten = first_unwritten(declaration, lives, export.resource, export.version, export.range);
         if let Some((mip, layer)) = unwritten {
             return Err(GraphError::Export {
                 resource: resource.name.clone(),
@@ -98,7 +101,7 @@ fn check_exports(declaration: &Declaration, history: &History) -> Result<(), Gra
                 mend: "export the handle that the pass writing it returned".to_owned(),
             });
         }
-        let life = history.life(export.resource);
+        let life = lives.life(export.resource);
         let later = |version: u32| version > export.version;
         if let Some(write) = life.writes.iter().find(|w| later(w.version) && w.range.overlaps(export.range)) {
             let exported = life.writes.iter().find(|w| w.version == export.version);
@@ -107,6 +110,29 @@ fn check_exports(declaration: &Declaration, history: &History) -> Result<(), Gra
                 version: export.version,
                 exported_writer: exported.map(|w| declaration.passes[w.pass].name.clone()),
                 pass: declaration.passes[write.pass].name.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// What the next frame finds as the previous half has been written in this one.
+fn check_histories(declaration: &Declaration, lives: &Lives) -> Result<(), GraphError> {
+    let unused = |id| lives.life(id).reads.is_empty() && lives.life(id).writes.is_empty();
+    for (index, resource) in declaration.resources.iter().enumerate() {
+        let current = ResourceId(index as u32);
+        if resource.half != Some(Half::Current) || (unused(current) && unused(ResourceId(index as u32 - 1))) {
+            continue;
+        }
+        let (mips, layers) = resource.desc.subresources();
+        let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
+        if let Some((mip, layer)) = first_unwritten(declaration, lives, current, u32::MAX, whole) {
+            return Err(GraphError::Resource {
+                resource: resource.name.clone(),
+                problem: format!(
+                    "nothing writes mip {mip}, layer {layer}, which the next frame would find as the previous half"
+                ),
+                mend: "write all of the current half in every frame that uses the history".to_owned(),
             });
         }
     }
@@ -123,7 +149,7 @@ mod tests {
 
     fn run(graph: &mut Graph<()>) -> Result<(), GraphError> {
         validate(&mut graph.declaration, &Limits::default())?;
-        hazards(&graph.declaration, &History::of(&graph.declaration))
+        hazards(&graph.declaration, &Lives::of(&graph.declaration))
     }
 
     fn write(graph: &mut Graph<()>, pass: &str, handle: Handle<Buffer>) -> Handle<Buffer> {

@@ -1,4 +1,4 @@
-//! Phase 5: from which step to which step each resource is in use.
+//! Phase 6: from which step to which step each resource is in use.
 
 use crate::graph::Declaration;
 use crate::plan::{Lifetime, PlanExport, PlanResource};

@@ -1,5 +1,5 @@
 //! From a declaration to a plan, in named phases, one file each:
-//! validate -> hazards -> order -> cull -> lifetimes -> barriers.
+//! extents -> validate -> hazards -> order -> cull -> lifetimes -> barriers.
 //!
 //! Hazards come before order: order relies on each resource's versions being one chain, which is what the
 //! hazards phase proves.
@@ -10,30 +10,37 @@ mod barriers;
 mod coalesce;
 mod cull;
 mod epochs;
+mod extents;
 mod hazards;
-mod history;
 mod lifetimes;
+mod lives;
 mod order;
 mod validate;
 
 use crate::error::GraphError;
-use crate::graph::{Declaration, Graph, Limits};
+use crate::graph::{Declaration, Graph};
+use crate::handle::ResourceId;
+use crate::history::Half;
+use crate::options::{Limits, Options};
 use crate::pass::{Pass, Use};
-use crate::plan::{Plan, PlanAccess, Step};
+use crate::plan::{Plan, PlanAccess, PlanHistory, Step};
+use crate::resource::Origin;
 use ash::vk;
-use history::History;
+use lives::Lives;
 
-pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits) -> Result<Plan<R>, GraphError> {
+pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits, options: &Options) -> Result<Plan<R>, GraphError> {
     let Graph { mut declaration, payloads } = graph;
+    extents::extents(&mut declaration, options)?;
     validate::validate(&mut declaration, limits)?;
     let payloads = require_payloads(&declaration, payloads)?;
-    let history = History::of(&declaration);
-    hazards::hazards(&declaration, &history)?;
-    let order = order::order(&declaration, &history)?;
-    let cull = cull::cull(&declaration, &history);
+    let lives = Lives::of(&declaration);
+    hazards::hazards(&declaration, &lives)?;
+    let order = order::order(&declaration, &lives, options.seed)?;
+    let cull = cull::cull(&declaration, &lives);
     let order: Vec<usize> = order.into_iter().filter(|pass| cull.alive[*pass]).collect();
     let resources = lifetimes::lifetimes(&declaration, &order);
     let barriers = barriers::barriers(&declaration, &order, limits);
+    let histories = histories(&declaration);
     Ok(Plan {
         steps: steps(declaration.passes, payloads, &order, barriers.steps),
         resources,
@@ -41,8 +48,25 @@ pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits) -> Result<Plan<R>, Gr
         final_barriers: barriers.exits,
         releases: barriers.releases,
         culled: cull.culled,
+        histories,
         left_out: declaration.left_out,
+        queue_family: limits.queue_family,
     })
+}
+
+/// Halves are declared in pairs, the previous one first.
+fn histories(declaration: &Declaration) -> Vec<PlanHistory> {
+    let resources = declaration.resources.iter().enumerate();
+    resources
+        .filter_map(|(index, resource)| match (resource.half, resource.origin) {
+            (Some(Half::Previous), Origin::Imported { exit, .. }) => Some(PlanHistory {
+                previous: ResourceId(index as u32),
+                current: ResourceId(index as u32 + 1),
+                resting: exit,
+            }),
+            _ => None,
+        })
+        .collect()
 }
 
 fn require_payloads<R>(declaration: &Declaration, payloads: Vec<Option<R>>) -> Result<Vec<R>, GraphError> {

@@ -1,6 +1,7 @@
-//! Phase 3: a topological order (Kahn 1962), the pass declared first going first among those that are ready.
+//! Phase 4: a topological order (Kahn 1962), the pass declared first going first among those that are
+//! ready, or with a seed any of them.
 
-use super::history::{History, Life, contains};
+use super::lives::{Life, Lives, contains};
 use crate::error::GraphError;
 use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
@@ -17,7 +18,11 @@ struct ReadBefore {
     version: u32,
 }
 
-pub(super) fn order(declaration: &Declaration, history: &History) -> Result<Vec<usize>, GraphError> {
+pub(super) fn order(
+    declaration: &Declaration,
+    lives: &Lives,
+    seed: Option<u64>,
+) -> Result<Vec<usize>, GraphError> {
     let count = declaration.passes.len();
     let mut edges = BTreeMap::new();
     for (index, resource) in declaration.resources.iter().enumerate() {
@@ -25,7 +30,7 @@ pub(super) fn order(declaration: &Declaration, history: &History) -> Result<Vec<
         let (mips, layers) = resource.desc.subresources();
         let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
         for at in whole.subresources() {
-            add_edges(&mut edges, id, history.life(id), at);
+            add_edges(&mut edges, id, lives.life(id), at);
         }
     }
     let mut successors: Successors = vec![Vec::new(); count];
@@ -34,19 +39,27 @@ pub(super) fn order(declaration: &Declaration, history: &History) -> Result<Vec<
         successors[*from].push(*to);
         waits_for[*to] += 1;
     }
-    let mut ready: BinaryHeap<Reverse<usize>> =
-        (0..count).filter(|pass| waits_for[*pass] == 0).map(Reverse).collect();
+    let rank = |pass: usize| Reverse((seed.map_or(0, |seed| shuffled(seed, pass)), pass));
+    let mut ready: BinaryHeap<_> = (0..count).filter(|pass| waits_for[*pass] == 0).map(rank).collect();
     let mut order = Vec::with_capacity(count);
-    while let Some(Reverse(pass)) = ready.pop() {
+    while let Some(Reverse((_, pass))) = ready.pop() {
         order.push(pass);
         for next in &successors[pass] {
             waits_for[*next] -= 1;
             if waits_for[*next] == 0 {
-                ready.push(Reverse(*next));
+                ready.push(rank(*next));
             }
         }
     }
     if order.len() == count { Ok(order) } else { Err(cycle(declaration, &edges, &successors)) }
+}
+
+/// A rank that is as good as random: splitmix64 (Steele, Lea and Flood 2014).
+fn shuffled(seed: u64, pass: usize) -> u64 {
+    let mut bits = seed.wrapping_add((pass as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ bits >> 31
 }
 
 /// Adds what one subresource demands: writer before reader, reader before the next writer, writer before the
@@ -125,7 +138,7 @@ mod tests {
 
     fn run(graph: &mut Graph<()>) -> Result<Vec<usize>, GraphError> {
         validate(&mut graph.declaration, &Limits::default())?;
-        order(&graph.declaration, &History::of(&graph.declaration))
+        order(&graph.declaration, &Lives::of(&graph.declaration), None)
     }
 
     #[test]

@@ -1,9 +1,11 @@
-//! Phase 1: every use makes sense by itself. Resolves ranges and completes the usage of transients.
+//! Phase 2: every use makes sense by itself. Resolves ranges and completes the usage of transients.
 
-use crate::access::Access;
+use crate::access::{Access, writes};
 use crate::error::GraphError;
-use crate::graph::{Declaration, Limits, Resource};
+use crate::graph::{Declaration, Resource};
 use crate::handle::ImageRange;
+use crate::history::Half;
+use crate::options::Limits;
 use crate::pass::{Pass, PassKind, Use};
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
 use ash::vk::{self, PipelineStageFlags2 as S};
@@ -21,11 +23,13 @@ fn fail<T>(problem: impl Into<String>, mend: &'static str) -> Checked<T> {
 pub(super) fn validate(declaration: &mut Declaration, limits: &Limits) -> Result<(), GraphError> {
     let Declaration { resources, passes, exports, .. } = declaration;
     for resource in resources.iter() {
-        check_desc(&resource.desc, limits).map_err(|(problem, mend)| GraphError::Resource {
-            resource: resource.name.clone(),
-            problem,
-            mend: mend.to_owned(),
-        })?;
+        check_desc(&resource.desc, limits).and_then(|()| check_history(resource)).map_err(
+            |(problem, mend)| GraphError::Resource {
+                resource: resource.name.clone(),
+                problem,
+                mend: mend.to_owned(),
+            },
+        )?;
     }
     for pass in passes.iter_mut() {
         check_pass(pass, resources).map_err(|(problem, mend)| GraphError::Pass {
@@ -67,6 +71,20 @@ fn check_desc(desc: &ResourceDesc, limits: &Limits) -> Checked {
         }
         ResourceDesc::Image(image) => check_image(image, limits),
     }
+}
+
+/// What a history rests in has to be safe to find and to leave: reads of the plan's own queue.
+fn check_history(resource: &Resource) -> Checked {
+    let (Some(_), Origin::Imported { exit, .. }) = (resource.half, resource.origin) else { return Ok(()) };
+    let layout = !resource.desc.is_image() || exit.layout != vk::ImageLayout::UNDEFINED;
+    let own = exit.queue_family == vk::QUEUE_FAMILY_IGNORED;
+    if exit.stage.is_empty() || writes(exit.access) || !layout || !own {
+        return fail(
+            "a history cannot rest in that state",
+            "let it rest in a state that reads, such as the one in which its previous half is read",
+        );
+    }
+    Ok(())
 }
 
 fn check_image(image: &ImageDesc, limits: &Limits) -> Checked {
@@ -166,7 +184,10 @@ fn check_use(used: &Use, kind: PassKind, resource: &mut Resource) -> Checked {
         return fail("an update has to load the attachment", "use the ReadWrite access of the attachment");
     }
     check_kind(access, kind)?;
-    let imported = matches!(resource.origin, Origin::Imported { .. });
+    if resource.half == Some(Half::Previous) && access.writes() {
+        return fail("it is what the frame before left", "write its current half");
+    }
+    let imported = matches!(resource.origin, Origin::Imported { .. }) && resource.half.is_none();
     match &mut resource.desc {
         ResourceDesc::Buffer(buffer) => {
             let needed = access.buffer_usage();

@@ -31,6 +31,8 @@ pub struct Plan<R> {
     pub(crate) releases: Barriers,
     pub(crate) culled: Vec<Culled>,
     pub(crate) left_out: Vec<LeftOut>,
+    pub(crate) histories: Vec<PlanHistory>,
+    pub(crate) queue_family: u32,
 }
 
 /// One pass of the plan, and the barriers before it.
@@ -99,6 +101,20 @@ pub struct PlanExport {
     pub version: u32,
     /// The state it is left in.
     pub state: State,
+}
+
+/// The two halves of a resource that remembers one frame.
+///
+/// Before the first execution the host fills `previous` and brings it into `resting`; between executions it
+/// swaps what it imports as the one and as the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlanHistory {
+    /// What the execution before wrote.
+    pub previous: ResourceId,
+    /// What this execution writes.
+    pub current: ResourceId,
+    /// The state both are found and left in.
+    pub resting: State,
 }
 
 /// A span of steps, both ends included.
@@ -179,6 +195,16 @@ impl<R> Plan<R> {
         &self.left_out
     }
 
+    /// Resources that remember one frame, in the order declared.
+    pub fn histories(&self) -> &[PlanHistory] {
+        &self.histories
+    }
+
+    /// The queue family the plan is for ([`Limits::queue_family`](crate::Limits::queue_family)).
+    pub fn queue_family(&self) -> u32 {
+        self.queue_family
+    }
+
     /// Every use of every step, in order: (step index, use).
     pub fn accesses(&self) -> impl Iterator<Item = (usize, &PlanAccess)> {
         self.steps
@@ -205,6 +231,8 @@ impl<R> Plan<R> {
             releases: self.releases,
             culled: self.culled,
             left_out: self.left_out,
+            histories: self.histories,
+            queue_family: self.queue_family,
         }
     }
 }

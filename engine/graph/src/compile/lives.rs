@@ -26,11 +26,11 @@ pub(super) struct Life {
     pub reads: Vec<Read>,
 }
 
-pub(super) struct History {
+pub(super) struct Lives {
     lives: Vec<Life>,
 }
 
-impl History {
+impl Lives {
     /// Needs resolved ranges and existing resources, as validation leaves them.
     pub fn of(declaration: &Declaration) -> Self {
         let mut lives = vec![Life::default(); declaration.resources.len()];
