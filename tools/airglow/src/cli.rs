@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, compare, devices, eval, explain, plan, render, report};
+use crate::commands::{bake, compare, devices, eval, explain, plan, render, report, stability};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -57,6 +57,7 @@ pub enum Command {
     Compare(compare::Arguments),
     Plan(plan::Arguments),
     Report(report::Arguments),
+    Stability(stability::Arguments),
     Explain(explain::Arguments),
     Eval(eval::Arguments),
 }

@@ -26,7 +26,8 @@ pub fn run(arguments: &Arguments, output: &Output) -> Outcome {
     let baked = transfer::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
     let quality = scene.quality;
     output.result(&baked.accounts, |accounts| {
-        let mut text = format!("order {}, {} rays a vertex, {:?}\n", quality.order, quality.rays, quality.shadow);
+        let mut text =
+            format!("order {}, {} rays a vertex, {:?}\n", quality.order, quality.rays, quality.shadow);
         for account in accounts {
             text.push_str(&line(account, quality.order));
         }

@@ -37,7 +37,9 @@ pub fn run(_: &Arguments, output: &Output) -> Outcome {
         })
         .collect();
     if lines.is_empty() {
-        output.warn("there is no Vulkan device; Mesa's lavapipe (package mesa-vulkan-drivers) makes one of the CPU");
+        output.warn(
+            "there is no Vulkan device; Mesa's lavapipe (package mesa-vulkan-drivers) makes one of the CPU",
+        );
     }
     output.result(&lines, |lines| lines.iter().map(text).collect::<Vec<_>>().join("\n"))
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use airglow::relight::Relight;
 use airglow::relight::Bench;
+use airglow::relight::Relight;
 use clap::{Args, ValueEnum};
 
 use crate::cli::Global;

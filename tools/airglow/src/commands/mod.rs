@@ -9,6 +9,7 @@ pub mod plan;
 pub mod render;
 pub mod report;
 pub mod scene;
+pub mod stability;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Outcome;
@@ -23,8 +24,9 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Render(arguments) => render::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
         Command::Plan(arguments) => plan::run(&arguments, global, output),
-        Command::Explain(arguments) => explain::run(&arguments, global, output),
         Command::Report(arguments) => report::run(&arguments, global, output),
+        Command::Stability(arguments) => stability::run(&arguments, global, output),
+        Command::Explain(arguments) => explain::run(&arguments, global, output),
         Command::Eval(arguments) => eval::run(&arguments, global, output),
     }
 }

@@ -52,8 +52,12 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             samples: 1,
             exposure: 1.0,
             turn: DQuat::IDENTITY,
+            spin: 0.0,
             without_relight: arguments.without == Some(PassName::Relight),
         };
+        if settings.without_relight && scene.environment.is_some() {
+            renderer.measure_relight(&settings)?;
+        }
         let plan = renderer.plan(&settings)?;
         let form = if output.json() { Form::Json } else { arguments.form };
         Ok(match form {

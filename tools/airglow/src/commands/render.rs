@@ -46,6 +46,15 @@ pub struct Arguments {
     /// Turn the environment about the vertical axis, degrees, counter-clockwise seen from above.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
     turn: f64,
+    /// Turn it further by so many degrees in each frame: the light of a moving sun, from one plan.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        allow_hyphen_values = true,
+        conflicts_with = "reference"
+    )]
+    spin: f64,
     /// Factor from scene-linear values to the display, instead of the scene file's.
     #[arg(long, value_name = "FACTOR")]
     exposure: Option<f32>,
@@ -139,6 +148,7 @@ fn settings(arguments: &Arguments, scene: &Scene, renderer: &mut Renderer<'_>) -
         samples: arguments.samples,
         exposure: 1.0,
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
+        spin: arguments.spin.to_radians(),
         without_relight: arguments.without == Some(PassName::Relight),
     };
     settings.exposure = match (arguments.exposure, scene.exposure) {
@@ -174,7 +184,10 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
         frames: timing.map_or(0, |timing| timing.frames),
         exposure: settings.exposure,
         passes: timing.map_or(Vec::new(), |timing| {
-            let pass = |pass: &airglow_gpu::PassTime| PassStat { name: pass.name.clone(), median_ms: 1e3 * pass.median };
+            let pass = |pass: &airglow_gpu::PassTime| PassStat {
+                name: pass.name.clone(),
+                median_ms: 1e3 * pass.median,
+            };
             timing.passes.iter().map(pass).collect()
         }),
         span_ms: timing.map(|timing| 1e3 * timing.span),
@@ -196,7 +209,10 @@ fn text(stat: &Stat) -> String {
     }
     match (stat.span_ms, stat.sum_ms) {
         (Some(span), Some(sum)) => {
-            text.push_str(&format!("  span {span:.3} ms, sum {sum:.3} ms, median of {} frames\n", stat.frames));
+            text.push_str(&format!(
+                "  span {span:.3} ms, sum {sum:.3} ms, median of {} frames\n",
+                stat.frames
+            ));
         }
         _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
     }

@@ -78,7 +78,10 @@ impl SceneOptions {
             output.warn(warning.to_string());
         }
         if scene.instances.is_empty() {
-            return Err(Failure::input(format!("{}: there is nothing to draw; add a mesh", self.scene.display())));
+            return Err(Failure::input(format!(
+                "{}: there is nothing to draw; add a mesh",
+                self.scene.display()
+            )));
         }
         if let Some(path) = &self.environment {
             let environment = airglow_scene::image_io::read_environment(path).map_err(Failure::input)?;

@@ -11,7 +11,7 @@ fn pattern(width: usize, height: usize, shift: usize) -> Vec<[u8; 3]> {
     for y in 0..height {
         for x in 0..width {
             let moved = x + shift;
-            let square = (moved / 9 + y / 7) % 2 == 0;
+            let square = (moved / 9 + y / 7).is_multiple_of(2);
             let point = moved % 23 == 5 && y % 19 == 3;
             let red = if point { 255 } else { (moved * 255 / (width + 8)).min(255) as u8 };
             let green = if square { 200 } else { (y * 200 / height) as u8 };

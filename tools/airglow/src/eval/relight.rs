@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use airglow::relight::{Bench, Texels};
 use airglow::relight::eval::{self, Evaluated, ProductRow, RotateRow, Rows};
+use airglow::relight::{Bench, Texels};
 use airglow::relight::{MAX_ORDER, RelightError};
 use airglow_scene::image_io::read_image;
 use glam::DQuat;

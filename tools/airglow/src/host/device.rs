@@ -1,9 +1,10 @@
 //! The host's device: opened here, then handed to the library by the road that any engine takes.
 
 use airglow_gpu::ash::vk;
-use airglow_gpu::open::{DeviceKind, DeviceLine, FrameSemaphores, FrameLoop, OpenDevice, OpenOptions, Selector};
+use airglow_gpu::open::{
+    DeviceKind, DeviceLine, FrameLoop, FrameSemaphores, OpenDevice, OpenOptions, Selector,
+};
 use airglow_gpu::{Context, Execution, GpuError, Imports, Recorder, Requirements, Timing};
-use airglow_graph::Limits;
 
 use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
@@ -11,6 +12,9 @@ use crate::report::model::Machine;
 
 /// How many frames may be on the device at once.
 const FRAMES_IN_FLIGHT: u32 = 2;
+
+/// What records one frame of a bench.
+type RecordOnce<'r> = dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError> + 'r;
 
 /// An open device and what the library made of it.
 pub struct Device<'d> {
@@ -27,8 +31,7 @@ pub fn with<R>(
 ) -> Outcome<R> {
     let selector = global.device.as_deref().map_or(Ok(Selector::Best), str::parse);
     let Ok(selector) = selector;
-    let options =
-        OpenOptions { selector, validation: global.validate, ..OpenOptions::new(requirements) };
+    let options = OpenOptions { selector, validation: global.validate, ..OpenOptions::new(requirements) };
     let open = OpenDevice::open(&options).map_err(Failure::device)?;
     let log = open.messages();
     let result = {
@@ -44,7 +47,9 @@ pub fn with<R>(
     drop(open);
     let messages = log.take();
     match messages.first() {
-        Some(first) => Err(Failure::check(format!("{} validation messages, the first: {first}", messages.len()))),
+        Some(first) => {
+            Err(Failure::check(format!("{} validation messages, the first: {first}", messages.len())))
+        }
         None => result,
     }
 }
@@ -56,7 +61,10 @@ impl Device<'_> {
     }
 
     /// Records commands, submits them and waits until they are done.
-    pub fn run<R>(&self, record: impl FnOnce(&mut Recorder<'_>) -> Result<R, GpuError>) -> Result<R, GpuError> {
+    pub fn run<R>(
+        &self,
+        record: impl FnOnce(&mut Recorder<'_>) -> Result<R, GpuError>,
+    ) -> Result<R, GpuError> {
         self.open.run(self.context, record)
     }
 
@@ -91,22 +99,8 @@ impl Device<'_> {
     }
 
     /// The same as a function, for what the rooms offer to tools and tests.
-    pub fn bench(
-        &self,
-    ) -> impl Fn(&mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>) -> Result<(), GpuError> {
+    pub fn bench(&self) -> impl Fn(&mut RecordOnce<'_>) -> Result<(), GpuError> {
         |record| self.run(record)
-    }
-
-    /// What the graph may ask of the device.
-    pub fn limits(&self) -> Limits {
-        let limits = self.context.limits();
-        Limits {
-            queue_family: self.open.queue_family(),
-            max_image_dimension_2d: limits.max_image_dimension2_d,
-            max_image_dimension_3d: limits.max_image_dimension3_d,
-            max_image_array_layers: limits.max_image_array_layers,
-            ..Limits::default()
-        }
     }
 
     /// Whether the device can render to and sample `format`.

@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, BufferSlice, ColorAttachment, ComputePipeline, ComputePipelineDesc, Context,
-    DepthAttachment, DepthState, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Load, Record, Recorder, Rendering,
-    Resources, VertexAttribute, VertexBufferLayout,
+    Binding, BindingDesc, BindingKind, Blend, BufferSlice, ColorAttachment, ComputePipeline,
+    ComputePipelineDesc, Context, DepthAttachment, DepthState, GpuError, GraphicsPipeline,
+    GraphicsPipelineDesc, Load, Record, Recorder, Rendering, Resources, VertexAttribute, VertexBufferLayout,
 };
 use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
 use bytemuck::{Pod, Zeroable};
 
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
-use super::view::ViewConstants;
+use super::view::SharedView;
 
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
@@ -80,7 +80,7 @@ impl Pipelines {
         &self,
         graph: &mut Graph<Record>,
         scene: &Arc<DeviceScene>,
-        view: &ViewConstants,
+        view: &SharedView,
         colours: Option<&VertexColours>,
         environment: Option<Handle<Image>>,
         size: [u32; 2],
@@ -97,14 +97,14 @@ impl Pipelines {
         let depth = pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite);
         let lit = if colours.is_some() { &self.lit } else { &self.ambient };
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
-        let (scene, view, colours) = (Arc::clone(scene), *view, colours.cloned());
+        let (scene, view, colours) = (Arc::clone(scene), view.clone(), colours.cloned());
         pass.record(Box::new(move |recorder, resources| {
             let targets = [resources.view(&hdr)?, resources.view(&depth)?];
             recorder.begin_rendering(&Rendering {
                 colors: &[ColorAttachment { view: &targets[0], load: Load::Clear([0.0, 0.0, 0.0, 1.0]) }],
                 depth: Some(DepthAttachment { view: &targets[1], load: Load::Clear(1.0), write: true }),
             })?;
-            let view = recorder.upload(&[view])?;
+            let view = recorder.upload(&[view.get()])?;
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
                 record_draw(recorder, resources, &pipeline, draw, &view, colours)?;
@@ -193,7 +193,8 @@ fn scene_pipeline(context: &Context, hdr: vk::Format, relight: bool) -> Result<G
     let position = [attribute(0, vk::Format::R32G32B32_SFLOAT)];
     let texture_coordinates = [attribute(1, vk::Format::R32G32_SFLOAT)];
     let colour = [attribute(2, vk::Format::R32G32B32A32_SFLOAT)];
-    let layout = |stride, attributes| VertexBufferLayout { stride, rate: vk::VertexInputRate::VERTEX, attributes };
+    let layout =
+        |stride, attributes| VertexBufferLayout { stride, rate: vk::VertexInputRate::VERTEX, attributes };
     let buffers = [layout(12, &position[..]), layout(8, &texture_coordinates[..]), layout(16, &colour[..])];
     context.create_graphics_pipeline(&GraphicsPipelineDesc {
         name: if relight { "scene, relit" } else { "scene, ambient" },

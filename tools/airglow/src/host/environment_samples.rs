@@ -30,7 +30,12 @@ impl<'a> EnvironmentSamples<'a> {
             total
         });
         let running = running.collect();
-        Ok(Self { environment, world_from_map: environment.rotation.as_dquat().normalize(), running, solid_angles })
+        Ok(Self {
+            environment,
+            world_from_map: environment.rotation.as_dquat().normalize(),
+            running,
+            solid_angles,
+        })
     }
 
     /// Radiance from a world direction, and the density with which [`sample`](Self::sample) picks it (per sr).
@@ -67,7 +72,9 @@ impl<'a> EnvironmentSamples<'a> {
     /// Mean radiance over all directions: what a white surface would send out if it came evenly from everywhere.
     pub fn mean_radiance(&self) -> [f32; 3] {
         let mut sum = [0.0_f64; 3];
-        for (pixels, solid_angle) in self.environment.pixels.chunks(self.environment.width).zip(&self.solid_angles) {
+        for (pixels, solid_angle) in
+            self.environment.pixels.chunks(self.environment.width).zip(&self.solid_angles)
+        {
             for pixel in pixels {
                 sum = [0, 1, 2].map(|c| sum[c] + solid_angle * f64::from(pixel[c]));
             }

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use airglow::relight::{MeshId, Relight, Storage as RelightStorage};
+use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Buffer, Execution, Label, Location, Requirements, Timing, TimingSummary};
 use airglow_graph::{Access, BufferDesc, Plan};
-use airglow_gpu::Record;
 use airglow_scene::{Camera, FloatImage, Scene, Storage};
 use glam::DQuat;
 
@@ -16,6 +16,7 @@ use super::environment_samples::EnvironmentSamples;
 use super::frame;
 use super::scene::{self, DeviceScene};
 use super::transfer::{InstanceTransfer, SceneTransfer};
+use super::view::ViewConstants;
 use super::{upload, view};
 use crate::failure::{Failure, Outcome};
 
@@ -28,9 +29,12 @@ pub struct Renderer<'d> {
     pub(super) ambient: [f32; 3],
     pub(super) relight: Relight,
     pub(super) meshes: Vec<MeshId>,
+    /// Vertices of each of `meshes`.
+    vertices: Vec<u64>,
     pub(super) instances: Vec<InstanceTransfer>,
     pub(super) pipelines: Pipelines,
     pub(super) vertex_colours: Option<HostColours>,
+    pub(super) relight_seconds: Option<f64>,
     pub(super) linear: Buffer,
     pub(super) display: Buffer,
     size: [u32; 2],
@@ -61,6 +65,8 @@ pub struct Settings {
     pub exposure: f32,
     /// Turns the environment, on top of the scene's own rotation.
     pub turn: DQuat,
+    /// Turns the environment further about the vertical axis in each frame, radians.
+    pub spin: f64,
     /// Leaves the relight pass out: ambient light only.
     pub without_relight: bool,
 }
@@ -115,17 +121,23 @@ impl<'d> Renderer<'d> {
             meshes.push(mesh.map_err(Failure::work)?);
         }
         let ambient = match &scene.environment {
-            Some(environment) => EnvironmentSamples::new(environment).map_err(Failure::input)?.mean_radiance(),
+            Some(environment) => {
+                EnvironmentSamples::new(environment).map_err(Failure::input)?.mean_radiance()
+            }
             None => [0.0; 3],
         };
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let target = |name, bytes| {
             let desc = BufferDesc { size: bytes * pixels, usage: vk::BufferUsageFlags::STORAGE_BUFFER };
-            context.create_buffer(Label::new(upload::OWNER, name), &desc, Location::Readback).map_err(Failure::work)
+            context
+                .create_buffer(Label::new(upload::OWNER, name), &desc, Location::Readback)
+                .map_err(Failure::work)
         };
         let hdr = vk::Format::R32G32B32A32_SFLOAT;
         if !device.renders(hdr) {
-            return Err(Failure::device(format!("the device cannot render to {hdr:?}; choose another with --device")));
+            return Err(Failure::device(format!(
+                "the device cannot render to {hdr:?}; choose another with --device"
+            )));
         }
         Ok(Self {
             device,
@@ -139,9 +151,11 @@ impl<'d> Renderer<'d> {
             ambient,
             relight,
             meshes,
+            vertices: transfer.transfers.iter().map(|transfer| transfer.vertex_count as u64).collect(),
             instances: transfer.instances.clone(),
             pipelines: Pipelines::new(context, hdr).map_err(Failure::work)?,
             vertex_colours: None,
+            relight_seconds: None,
             linear: target("linear picture", 12)?,
             display: target("display picture", 4)?,
             size,
@@ -164,24 +178,59 @@ impl<'d> Renderer<'d> {
         Ok(())
     }
 
+    /// The camera's view with the environment turned by `turn`.
+    pub(super) fn view(&self, settings: &Settings, turn: DQuat) -> ViewConstants {
+        let rotation = self.environment.as_ref().map_or(DQuat::IDENTITY, |map| turn * map.rotation);
+        ViewConstants::new(&self.camera, view::aspect(settings.size), rotation.as_quat(), self.ambient)
+    }
+
+    /// Bytes that the pass holds and makes for this scene: transfer of all meshes, colours of all instances.
+    pub(super) fn relight_bytes(&self) -> u64 {
+        let settings = self.relight.settings();
+        let vertices = |transfer: usize| self.vertices.get(transfer).copied().unwrap_or(0);
+        let transfer: u64 = self.vertices.iter().map(|count| count * settings.vector_bytes()).sum();
+        let instances = self.instances.iter().map(|instance| vertices(instance.transfer));
+        transfer + instances.map(|count| count * settings.output_bytes()).sum::<u64>()
+    }
+
+    /// Measures what leaving the pass out saves, for the plan to say: its median device time in a frame.
+    pub fn measure_relight(&mut self, settings: &Settings) -> Outcome {
+        let picture = self.draw(&Settings { without_relight: false, ..*settings }, WARM_UP + 9)?;
+        let passes = picture.timing.map_or(Vec::new(), |timing| timing.passes);
+        let ours = passes.iter().filter(|pass| pass.name.starts_with("relight"));
+        self.relight_seconds = (!passes.is_empty()).then(|| ours.map(|pass| pass.median).sum());
+        Ok(())
+    }
+
     /// The plan of a frame.
     pub fn plan(&mut self, settings: &Settings) -> Outcome<Plan<Record>> {
         let declared = frame::declare(self, settings)?;
-        declared.graph.compile(&self.device.limits()).map_err(Failure::work)
+        declared.graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)
     }
 
-    /// Draws `frames` frames, calling `before` ahead of each with its number and what turns the light, and reads the
-    /// last one back.
+    /// Draws `frames` frames and reads the last one back.
     pub fn draw(&mut self, settings: &Settings, frames: usize) -> Outcome<Picture> {
         let declared = frame::declare(self, settings)?;
-        let plan = declared.graph.compile(&self.device.limits()).map_err(Failure::work)?;
+        let plan = declared.graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)?;
         let context = self.device.context();
         let passes = plan.steps().len() as u32;
         let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
         // A queue without timestamps draws all the same.
         let mut timing = Timing::new(context, passes, WARM_UP, frames).ok();
+        let instances: Vec<DQuat> = self.instances.iter().map(|instance| instance.rotation).collect();
+        let turn_light = |frame: usize| {
+            // One plan for all frames: only the rotation of the light and of the view's sky changes.
+            let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;
+            declared.view.set(self.view(settings, turn));
+            match (&declared.rotations, &self.environment) {
+                (Some(rotations), Some(map)) => {
+                    rotations.set(turn * map.rotation, &instances).map_err(Failure::work)
+                }
+                _ => Ok(()),
+            }
+        };
         let cpu_milliseconds =
-            self.device.frames(&mut execution, &declared.imports, timing.as_mut(), frames, |_| Ok(()))?;
+            self.device.frames(&mut execution, &declared.imports, timing.as_mut(), frames, turn_light)?;
         let pixels = self.size[0] as usize * self.size[1] as usize;
         let linear: Vec<f32> = self.linear.read(0, 3 * pixels).map_err(Failure::work)?;
         let display: Vec<[u8; 4]> = self.display.read(0, pixels).map_err(Failure::work)?;

@@ -68,9 +68,12 @@ pub struct MaterialConstants {
 /// Uploads the scene; the recorder's commands must be done before the first frame.
 pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene, GpuError> {
     let context = recorder.context();
-    let meshes = scene.meshes.iter().map(|mesh| upload_mesh(recorder, mesh)).collect::<Result<Vec<_>, _>>()?;
-    let white = upload::image(recorder, "white", COLOUR, &[(1, 1, vec![[255_u8; 4]])], Access::FragmentSampled)?;
-    let images = scene.images.iter().map(|image| upload_image(recorder, image)).collect::<Result<Vec<_>, _>>()?;
+    let meshes =
+        scene.meshes.iter().map(|mesh| upload_mesh(recorder, mesh)).collect::<Result<Vec<_>, _>>()?;
+    let white =
+        upload::image(recorder, "white", COLOUR, &[(1, 1, vec![[255_u8; 4]])], Access::FragmentSampled)?;
+    let images =
+        scene.images.iter().map(|image| upload_image(recorder, image)).collect::<Result<Vec<_>, _>>()?;
     let mut draws = Vec::with_capacity(scene.instances.len());
     for instance in &scene.instances {
         let material = &scene.materials[instance.material];

@@ -36,7 +36,8 @@ pub fn of_scene(
         let occluders = Occluders::build(blockers).map_err(Failure::input)?;
         let instance = &scene.instances[number];
         let mesh = transfer::bake_mesh(scene, number);
-        let probe = Probe::new(&mesh, instance.transform, &occluders, f32::INFINITY).map_err(Failure::input)?;
+        let probe =
+            Probe::new(&mesh, instance.transform, &occluders, f32::INFINITY).map_err(Failure::input)?;
         Ok(colours(&instance.name, &probe, environment, samples, output))
     };
     (0..scene.instances.len()).map(one).collect()
@@ -119,15 +120,19 @@ mod tests {
     #[test]
     fn a_uniform_sky_gives_its_radiance() {
         let floor = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
-        let mesh = Mesh { name: "floor", positions: &floor, normals: &[[0.0, 1.0, 0.0]; 3], indices: &[0, 1, 2] };
+        let mesh =
+            Mesh { name: "floor", positions: &floor, normals: &[[0.0, 1.0, 0.0]; 3], indices: &[0, 1, 2] };
         let far = 1e6_f32;
         let wall = [[-1e-3, -far, -far], [-1e-3, -far, 3.0 * far], [-1e-3, 3.0 * far, -far]];
-        let wall = Mesh { name: "wall", positions: &wall, normals: &[[1.0, 0.0, 0.0]; 3], indices: &[0, 1, 2] };
+        let wall =
+            Mesh { name: "wall", positions: &wall, normals: &[[1.0, 0.0, 0.0]; 3], indices: &[0, 1, 2] };
         let rotation = Quat::from_rotation_y(1.0);
         let pixels = vec![[3.0, 1.0, 0.0]; 32];
         let environment = Environment { file: "sky".into(), width: 8, height: 4, pixels, rotation };
         let samples = EnvironmentSamples::new(&environment).unwrap();
-        for (blockers, expected) in [(vec![mesh.occluder()], 3.0), (vec![mesh.occluder(), wall.occluder()], 1.5)] {
+        for (blockers, expected) in
+            [(vec![mesh.occluder()], 3.0), (vec![mesh.occluder(), wall.occluder()], 1.5)]
+        {
             let occluders = Occluders::build(&blockers).unwrap();
             let probe = Probe::new(&mesh, Mat4::IDENTITY, &occluders, f32::INFINITY).unwrap();
             let found = vertex_colour(&probe, 0, &samples, 4096)[0];

@@ -1,5 +1,7 @@
 //! What the draws of one view share.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use airglow_scene::{Camera, FloatImage};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Quat, Vec3};
@@ -29,6 +31,26 @@ impl ViewConstants {
     }
 }
 
+/// The view of a plan that is recorded again: what was set last counts.
+#[derive(Clone, Debug)]
+pub struct SharedView(Arc<Mutex<ViewConstants>>);
+
+impl SharedView {
+    /// Starts with `view`.
+    pub fn new(view: ViewConstants) -> Self {
+        Self(Arc::new(Mutex::new(view)))
+    }
+
+    /// The view set last.
+    pub fn get(&self) -> ViewConstants {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Counts from the next recording on.
+    pub fn set(&self, view: ViewConstants) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = view;
+    }
+}
 
 /// `aspect` of a picture.
 pub fn aspect(size: [u32; 2]) -> f32 {
@@ -54,7 +76,8 @@ mod tests {
                 *far = None;
             }
             let view = ViewConstants::new(&camera, 1.5, Quat::IDENTITY, [0.0; 3]);
-            let near = Mat4::from_cols_array_2d(&view.direction_from_clip) * glam::Vec4::new(0.0, 0.0, 0.0, 1.0);
+            let near =
+                Mat4::from_cols_array_2d(&view.direction_from_clip) * glam::Vec4::new(0.0, 0.0, 0.0, 1.0);
             let direction = (near.truncate() / near.w).normalize();
             assert!((direction - camera.direction()).length() < 1e-4, "{direction} {}", camera.direction());
         }

@@ -7,5 +7,6 @@ pub mod model;
 pub mod pareto;
 pub mod plot;
 pub mod relight;
+pub mod sweep;
 pub mod table;
 pub mod write;

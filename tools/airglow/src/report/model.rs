@@ -165,11 +165,6 @@ impl Point {
 }
 
 impl Curve {
-    /// The measured point of a setting.
-    pub fn point(&self, setting: &str) -> Option<&Point> {
-        self.points.iter().find(|point| point.setting == setting)
-    }
-
     /// Whether `point` is the chosen one.
     pub fn is_chosen(&self, point: &Point) -> bool {
         self.chosen.as_ref().is_some_and(|choice| choice.setting == point.setting)

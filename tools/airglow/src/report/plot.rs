@@ -90,10 +90,11 @@ fn dots(cost: Cost, curve: &Curve) -> Vec<Dot> {
     curve.points.iter().filter_map(make).collect()
 }
 
-/// The smallest and largest value with a margin that is even on a logarithmic axis.
+/// The smallest and largest value with a margin that is even on a logarithmic axis, and wide enough to hold a power
+/// of ten.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), v| (low.min(v), high.max(v)));
-    let margin = (high / low).powf(0.12).max(1.3);
+    let margin = (high / low).powf(0.12).max(1.3).max((12.0 * low / high).sqrt());
     (low / margin, high * margin)
 }
 
@@ -117,7 +118,7 @@ fn draw(
         .label_style(("sans-serif", 13))
         .x_label_formatter(&|value| short(*value))
         .y_label_formatter(&|value| format!("{value:.0e}"))
-        .light_line_style(RGBColor(238, 238, 238))
+        .light_line_style(WHITE)
         .bold_line_style(RGBColor(215, 215, 215))
         .draw()?;
     for (index, (device, dots)) in series.iter().enumerate() {

@@ -3,9 +3,9 @@
 use airglow::relight::rivals::{self as contestants, Rival as Contestant, Task};
 use airglow::relight::{Bench, Method, Settings, Storage};
 
+use super::errors;
 use super::rivals::{self, Timed};
 use super::workload::{Effort, FULL_ORDER, Workload, truncate};
-use super::errors;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
 use crate::output::Output;
@@ -30,7 +30,8 @@ pub struct Measurement<'a> {
 impl Measurement<'_> {
     /// Orders 1 to 6, with the converged number of rays.
     pub fn order(&self) -> Outcome<Curve> {
-        let settings = (1..=FULL_ORDER).map(|order| (order.to_string(), Settings { order, ..Settings::default() }));
+        let settings =
+            (1..=FULL_ORDER).map(|order| (order.to_string(), Settings { order, ..Settings::default() }));
         let mut points = self.frame_points("orders", settings.collect())?;
         let chosen = worth_its_cost(&points);
         self.curve(

@@ -1,7 +1,9 @@
 //! Settings timed against one another: each a plan of its own, one frame of each in turn.
 
-use airglow::relight::{Frame, Instance, Light, Method, Relight, Settings};
+use airglow::relight::curve;
+use airglow::relight::kernels::WORKGROUP;
 use airglow::relight::rivals::{Rival as Contestant, Task};
+use airglow::relight::{Frame, Instance, Light, Method, Relight, Settings};
 use airglow_gpu::{Execution, Imports, Record, Timing};
 use airglow_graph::{Access, Graph};
 use glam::DQuat;
@@ -68,17 +70,16 @@ pub fn relight(
     if let Some(results) = relit.results {
         graph.export(results, Access::VertexBuffer);
     }
-    let bytes = vertices as u64 * (settings.vector_bytes() + settings.output_bytes());
-    let rectangle = vertices.next_multiple_of(1024) as u64;
+    let work = curve::counts(&settings, vertices as u32);
     let fragment = settings.method == Method::Fragment;
     let counts = Counts {
-        // The fragment method writes its image and copies it.
-        bytes: bytes + if fragment { 2 * 16 * rectangle } else { 0 },
-        invocations: if fragment { rectangle } else { vertices.next_multiple_of(64) as u64 } + 64,
+        bytes: work.read + work.written,
+        // The light is rotated by one workgroup.
+        invocations: work.invocations + u64::from(WORKGROUP),
         dispatches: if fragment { 1 } else { 2 },
         draws: u64::from(fragment),
     };
-    let memory = bytes + if fragment { 16 * rectangle } else { 0 };
+    let memory = work.read + work.memory;
     let (execution, timing) = prepare(device, graph)?;
     Ok(Rival { name: name.into(), execution, imports, timing, _relight: Some(relight), counts, memory })
 }
@@ -108,7 +109,7 @@ fn pad(&[r, g, b]: &[f64; 3]) -> [f32; 4] {
 
 fn prepare(device: &Device<'_>, graph: Graph<Record>) -> Outcome<(Execution, Timing)> {
     let context = device.context();
-    let plan = graph.compile(&device.limits()).map_err(Failure::work)?;
+    let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
     let timing = Timing::new(context, plan.steps().len() as u32, 0, 1).map_err(Failure::device)?;
     Ok((Execution::prepare(context, plan).map_err(Failure::work)?, timing))
 }

@@ -100,7 +100,10 @@ impl Workload {
                 mesh.name,
                 mesh.positions.len(),
                 blockers.iter().map(|blocker| blocker.indices.len() / 3).sum::<usize>(),
-                environment.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+                environment
+                    .file
+                    .file_name()
+                    .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
                 environment.width,
                 environment.height
             ),
@@ -160,5 +163,6 @@ fn project(environment: &Environment) -> Outcome<Vec<[f64; 3]>> {
         Projector::new(FULL_ORDER, environment.width, environment.height).map_err(Failure::input)?;
     let light = projector.project(&environment.pixels).map_err(Failure::input)?;
     let turn = environment.rotation.as_dquat();
-    airglow::relight::reference::light(FULL_ORDER, &light, turn, glam::DQuat::IDENTITY).map_err(Failure::input)
+    airglow::relight::reference::light(FULL_ORDER, &light, turn, glam::DQuat::IDENTITY)
+        .map_err(Failure::input)
 }
