@@ -2,8 +2,15 @@
 //!
 //! A test reflects each module and compares it with what stands here.
 
+mod modules;
+
 use airglow_gpu::{BindingDesc, BindingKind};
 use airglow_graph::Access;
+
+use modules::{
+    ByOrder, COLOUR, ENVIRONMENT_BANDS, ENVIRONMENT_ROWS, INCIDENT_BAKED, INCIDENT_BOTH, INCIDENT_DYNAMIC,
+    PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX, ROTATE,
+};
 
 use crate::settings::{LightKind, Output, Settings, Storage};
 
@@ -63,74 +70,6 @@ pub(crate) enum Source {
     /// Both.
     Both,
 }
-
-macro_rules! module {
-    ($($part:expr),*) => {
-        include_bytes!(concat!("../../../shaders/spirv/relight/", $($part,)* ".spv")).as_slice()
-    };
-}
-macro_rules! by_order {
-    ($before:literal, $after:literal) => {
-        [
-            module!($before, ".ORDER1", $after),
-            module!($before, ".ORDER2", $after),
-            module!($before, ".ORDER3", $after),
-            module!($before, ".ORDER4", $after),
-            module!($before, ".ORDER5", $after),
-            module!($before, ".ORDER6", $after),
-        ]
-    };
-}
-/// Modules by order - 1.
-type ByOrder = [&'static [u8]; 6];
-
-static ENVIRONMENT_ROWS: ByOrder = by_order!("environment_rows", "");
-static ENVIRONMENT_BANDS: ByOrder = by_order!("environment_bands", "");
-static ROTATE: ByOrder = by_order!("rotate", "");
-static PRODUCT: ByOrder = by_order!("product", "");
-static PRODUCT_MATRIX: ByOrder = by_order!("product_matrix", "");
-/// By visibility, light, storage.
-static COLOUR: [[[ByOrder; 2]; 2]; 2] = [
-    [
-        [by_order!("colour.uniform", ".f32"), by_order!("colour.uniform", ".f16")],
-        [by_order!("colour.vertex", ".f32"), by_order!("colour.vertex", ".f16")],
-    ],
-    [
-        [by_order!("colour.uniform", ".f32.VISIBILITY"), by_order!("colour.uniform", ".f16.VISIBILITY")],
-        [by_order!("colour.vertex", ".f32.VISIBILITY"), by_order!("colour.vertex", ".f16.VISIBILITY")],
-    ],
-];
-/// By visibility, light, storage.
-static RECTANGLE: [[[ByOrder; 2]; 2]; 2] = [
-    [
-        [by_order!("colour_rectangle.uniform", ".f32"), by_order!("colour_rectangle.uniform", ".f16")],
-        [by_order!("colour_rectangle.vertex", ".f32"), by_order!("colour_rectangle.vertex", ".f16")],
-    ],
-    [
-        [
-            by_order!("colour_rectangle.uniform", ".f32.VISIBILITY"),
-            by_order!("colour_rectangle.uniform", ".f16.VISIBILITY"),
-        ],
-        [
-            by_order!("colour_rectangle.vertex", ".f32.VISIBILITY"),
-            by_order!("colour_rectangle.vertex", ".f16.VISIBILITY"),
-        ],
-    ],
-];
-/// By light, storage.
-static INCIDENT_BAKED: [[ByOrder; 2]; 2] = [
-    [by_order!("incident.uniform", ".static.f32"), by_order!("incident.uniform", ".static.f16")],
-    [by_order!("incident.vertex", ".static.f32"), by_order!("incident.vertex", ".static.f16")],
-];
-/// By light, storage.
-static INCIDENT_BOTH: [[ByOrder; 2]; 2] = [
-    [by_order!("incident.uniform", ".both.f32"), by_order!("incident.uniform", ".both.f16")],
-    [by_order!("incident.vertex", ".both.f32"), by_order!("incident.vertex", ".both.f16")],
-];
-/// By light.
-static INCIDENT_DYNAMIC: [ByOrder; 2] =
-    [by_order!("incident.uniform", ".dynamic"), by_order!("incident.vertex", ".dynamic")];
-static RECTANGLE_VERTEX: &[u8] = module!("rectangle");
 
 const fn storage(binding: u32, access: Access) -> Binding {
     Binding { binding, kind: BindingKind::StorageBuffer, access }

@@ -35,7 +35,9 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod builder;
 mod control;
+pub mod curve;
 mod declare;
 mod error;
 pub mod eval;
@@ -51,6 +53,7 @@ mod resident;
 pub mod rivals;
 mod rotation;
 mod settings;
+pub mod stability;
 mod stage;
 mod tables;
 mod vertices;

@@ -6,11 +6,11 @@ use airglow_gpu::BindingKind;
 use airglow_graph::{Access, PassKind};
 
 use crate::RelightError;
+use crate::builder::Builder;
 use crate::frame::{Frame, Instance, ResultRange};
 use crate::kernels::{self, Kernel, Source};
 use crate::mesh::{Mesh, stride};
 use crate::pack::{Chunk, RECTANGLE_WIDTH};
-use crate::prepare::Builder;
 use crate::relight::{Relight, VertexPipeline};
 use crate::settings::{LightKind, Method, Output};
 use crate::stage::{Bound, ChunkConstants, ChunkWork, Resource, Work};

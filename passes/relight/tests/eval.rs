@@ -66,8 +66,11 @@ fn products_agree_with_the_reference() {
     });
 }
 
-/// Sizes, and which texel is 1e5 in a dim map, if any.
-const MAPS: [(u32, u32, Option<(u32, u32)>); 9] = [
+/// A texel of 1e5 in a dim map, if there is one.
+type Peak = Option<(u32, u32)>;
+
+/// Sizes and peaks.
+const MAPS: [(u32, u32, Peak); 9] = [
     (1, 1, None),
     (8192, 1, None),
     (1, 8192, None),

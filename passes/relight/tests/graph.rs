@@ -1,5 +1,7 @@
 //! The road of the graph: what a plan holds and leaves out, the same bits as without a graph, meshes between frames.
 
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
 mod host;
 
 use std::path::Path;

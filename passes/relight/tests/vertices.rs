@@ -1,5 +1,7 @@
 //! The kernels over vertices against the f64 reference: storages, orders, lights, visibility, both methods, chunks.
 
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
 mod host;
 
 use airglow_math::sh::product::TripleProduct;
