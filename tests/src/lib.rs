@@ -6,4 +6,5 @@ pub mod data;
 pub mod device;
 pub mod golden;
 pub mod reflect;
+pub mod shim;
 pub mod spirv;

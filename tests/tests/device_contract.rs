@@ -90,7 +90,9 @@ fn adopting_names_what_is_missing() {
     assert!(!message.contains("dynamicRendering"), "{message}");
 
     let message = error(adopt(&|info| info.api_version = vk::API_VERSION_1_2));
-    assert!(message.contains("Vulkan 1.3 (this is 1.2)"), "{message}");
+    assert!(message.contains("extension VK_KHR_synchronization2, not enabled"), "{message}");
+    let message = error(adopt(&|info| info.api_version = vk::API_VERSION_1_1));
+    assert!(message.contains("Vulkan 1.2 (this is 1.1)"), "{message}");
 
     let message = error(adopt(&|info| info.queue_family = 99));
     assert!(message.contains("a queue family with"), "{message}");

@@ -1,12 +1,14 @@
 //! The library's side of a host's device: what `adopt` makes of raw handles.
 
 use crate::allocator::{Allocator, BlockAllocator};
+use crate::breadcrumbs::Breadcrumbs;
 use crate::error::GpuError;
 use crate::feature::FeatureSet;
 use crate::frame::FrameSlot;
 use crate::functions;
 use crate::memory::OwnerBytes;
 use crate::offer::Offer;
+use crate::options::Options;
 use crate::requirements::Requirements;
 use crate::shared::{DeviceFacts, Shared, lock};
 use ash::vk;
@@ -42,6 +44,8 @@ pub struct AdoptInfo<'a> {
     pub pipeline_cache: vk::PipelineCache,
     /// How many frames may be on the device or being recorded at once, at least 1.
     pub frames_in_flight: u32,
+    /// Choices that no host has to make.
+    pub options: Options,
 }
 
 /// A host's device, seen from the library. Many can live in one process; there are no statics.
@@ -50,6 +54,7 @@ pub struct AdoptInfo<'a> {
 pub struct Context {
     /// Dropped before `shared`: the slots' buffers retire into it.
     slots: Vec<Mutex<FrameSlot>>,
+    pub(crate) breadcrumbs: Option<Breadcrumbs>,
     pub(crate) shared: Arc<Shared>,
 }
 
@@ -59,7 +64,7 @@ impl Context {
     /// # Errors
     /// [`GpuError::MissingFunction`] with the name of the first function that get-proc-addr does not know,
     /// [`GpuError::Missing`] with the list of everything else that is lacking, [`GpuError::Misuse`] for
-    /// `frames_in_flight` of 0.
+    /// `frames_in_flight` of 0, [`GpuError::Memory`] or [`GpuError::Budget`] without memory for breadcrumbs.
     ///
     /// # Safety
     /// - The handles are alive, belong together, and `info` states truly what was enabled on them.
@@ -70,17 +75,8 @@ impl Context {
         if info.frames_in_flight == 0 {
             return Err(GpuError::misuse("frames_in_flight", "0; at least one frame is being recorded"));
         }
-        let debug_utils = info.extensions.contains(&"VK_EXT_debug_utils");
         // SAFETY: the caller vouches for handles and functions.
-        let functions = unsafe {
-            functions::load(
-                info.get_instance_proc_addr,
-                info.get_device_proc_addr,
-                info.instance,
-                info.device,
-                debug_utils,
-            )?
-        };
+        let functions = unsafe { functions::load(&info)? };
         // SAFETY: as above; only the functions probed are called.
         let facts = unsafe { check(&functions, &info)? };
         let allocator = match info.allocator {
@@ -90,9 +86,13 @@ impl Context {
                     .map_err(|reason| GpuError::Memory { what: "the allocator".to_owned(), reason })?,
             ),
         };
-        let shared = Arc::new(Shared::new(facts, functions, allocator));
-        let slots = (0..info.frames_in_flight).map(|_| Mutex::new(FrameSlot::new(&shared))).collect();
-        Ok(Self { slots, shared })
+        let shared = Arc::new(Shared::new(facts, functions, allocator, info.options.memory_budget));
+        let slots: Vec<_> = (0..info.frames_in_flight).map(|_| Mutex::new(FrameSlot::new(&shared))).collect();
+        let breadcrumbs = match info.options.breadcrumbs {
+            true => Some(Breadcrumbs::new(&shared, slots.len())?),
+            false => None,
+        };
+        Ok(Self { slots, breadcrumbs, shared })
     }
 
     /// Starts frame `frame`: memory and descriptors of the frame that used the same slot are used again, and what was
@@ -116,8 +116,9 @@ impl Context {
         // SAFETY: the caller vouches that the device is done with the frames in question.
         unsafe {
             self.shared.begin_frame(frame);
-            self.slot().reset()
+            self.slot().reset()?;
         }
+        self.breadcrumbs.as_ref().map_or(Ok(()), |breadcrumbs| breadcrumbs.begin_frame(frame))
     }
 
     /// The frame being recorded.
@@ -150,6 +151,11 @@ impl Context {
     /// The features the host enabled.
     pub fn features(&self) -> FeatureSet {
         self.shared.facts.features
+    }
+
+    /// Bytes of the memory budget that are left; `None` when there is no budget.
+    pub fn memory_left(&self) -> Option<u64> {
+        self.shared.memory_left()
     }
 
     /// Bytes and objects by owner, sorted by name; what waits to be destroyed still counts.
@@ -185,20 +191,23 @@ unsafe fn check(functions: &functions::Functions, info: &AdoptInfo<'_>) -> Resul
         return Err(GpuError::Missing(missing));
     }
     let mut maintenance3 = vk::PhysicalDeviceMaintenance3Properties::default();
-    let mut maintenance4 = vk::PhysicalDeviceMaintenance4Properties::default();
-    let mut properties =
-        vk::PhysicalDeviceProperties2::default().push_next(&mut maintenance3).push_next(&mut maintenance4);
-    // SAFETY: as above; both structures are core in the version just checked, and the family's index too.
+    let mut maintenance4 =
+        vk::PhysicalDeviceMaintenance4Properties { max_buffer_size: u64::MAX, ..Default::default() };
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut maintenance3);
+    if offer.api_version >= vk::API_VERSION_1_3 {
+        properties = properties.push_next(&mut maintenance4);
+    }
+    // SAFETY: as above; the structures are core in the versions just checked, and the family's index was checked too.
     let queues = unsafe {
         instance.get_physical_device_properties2(info.physical_device, &mut properties);
         instance.get_physical_device_queue_family_properties(info.physical_device)
     };
-    let limits = properties.properties.limits;
+    let limits = info.options.mask.limits(properties.properties.limits);
     Ok(DeviceFacts {
         physical_device: info.physical_device,
         queue_family: info.queue_family,
         limits,
-        features: info.features,
+        features: info.options.mask.features(info.features, &requirements),
         frames_in_flight: u64::from(info.frames_in_flight),
         max_allocation: maintenance3.max_memory_allocation_size.min(maintenance4.max_buffer_size),
         pipeline_cache: info.pipeline_cache,

@@ -37,6 +37,23 @@ pub enum GpuError {
         /// Its value in bytes.
         allowed: u64,
     },
+    /// An object would take the context over the host's memory budget; nothing was allocated.
+    #[error(
+        "{what} needs {size} bytes, {held} are held and the budget is {budget}: only {} more fit; free something, \
+         choose smaller settings, or raise the budget to {}",
+        .budget.saturating_sub(*.held),
+        .held.saturating_add(*.size)
+    )]
+    Budget {
+        /// The object, or the objects together.
+        what: String,
+        /// Bytes asked for.
+        size: u64,
+        /// Bytes that the context's objects hold.
+        held: u64,
+        /// The budget in bytes.
+        budget: u64,
+    },
     /// No memory for an object.
     #[error("no memory for {what}: {reason}; free something or ask for less")]
     Memory {

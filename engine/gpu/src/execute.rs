@@ -38,8 +38,10 @@ impl Execution {
     /// Makes the plan's transient resources, charged to owner `transient`.
     ///
     /// # Errors
-    /// Those of making buffers and images; what was made until then is freed.
+    /// [`GpuError::Budget`] for all transients together, before any is made, and those of making buffers and images; what
+    /// was made until then is freed.
     pub fn prepare(context: &Context, plan: Plan<Record>) -> Result<Self, GpuError> {
+        context.shared.check_budget("the plan's transient resources", plan.bytes().transient)?;
         let transients =
             plan.resources().iter().map(|resource| transient(context, resource)).collect::<Result<_, _>>()?;
         let most = |count: fn(&Barriers) -> usize| {

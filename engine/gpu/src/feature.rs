@@ -2,6 +2,7 @@
 
 use ash::vk;
 use std::fmt;
+use std::mem::offset_of;
 
 /// The four feature structures of core Vulkan 1.3, unchained.
 #[derive(Clone, Copy, Default)]
@@ -14,6 +15,30 @@ pub struct FeatureStructs {
     pub v12: vk::PhysicalDeviceVulkan12Features<'static>,
     /// Features of Vulkan 1.3.
     pub v13: vk::PhysicalDeviceVulkan13Features<'static>,
+}
+
+/// A structure of [`FeatureStructs`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Group {
+    Core,
+    V11,
+    V12,
+    V13,
+}
+
+macro_rules! group {
+    (core) => {
+        Group::Core
+    };
+    (v11) => {
+        Group::V11
+    };
+    (v12) => {
+        Group::V12
+    };
+    (v13) => {
+        Group::V13
+    };
 }
 
 macro_rules! features {
@@ -31,6 +56,16 @@ macro_rules! features {
             /// The field's name in the Vulkan specification.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)* }
+            }
+
+            /// The structure that has it, and its byte in there.
+            pub(crate) fn place(self) -> (Group, usize) {
+                match self {
+                    $(Self::$variant => (
+                        group!($group),
+                        offset_of!(FeatureStructs, $group.$field) - offset_of!(FeatureStructs, $group),
+                    ),)*
+                }
             }
 
             fn get(self, structs: &FeatureStructs) -> bool {
@@ -66,6 +101,17 @@ features! {
     ShaderInt16 = core.shader_int16, "shaderInt16", "16-bit integers";
     ShaderInt64 = core.shader_int64, "shaderInt64", "64-bit integers";
     ShaderFloat64 = core.shader_float64, "shaderFloat64", "double precision";
+}
+
+impl Feature {
+    /// The extension that brings it to a device below Vulkan 1.3; `None` where no extension is needed or does.
+    pub fn extension_before_1_3(self) -> Option<&'static str> {
+        match self {
+            Self::Synchronization2 => Some("VK_KHR_synchronization2"),
+            Self::DynamicRendering => Some("VK_KHR_dynamic_rendering"),
+            _ => None,
+        }
+    }
 }
 
 /// A set of [`Feature`]s.

@@ -6,6 +6,7 @@
 //! [`Image`] and pipelines.
 
 mod allocator;
+mod breadcrumbs;
 mod clock;
 mod context;
 mod error;
@@ -13,10 +14,13 @@ mod execute;
 mod feature;
 mod frame;
 mod functions;
+mod health;
 mod memory;
 mod offer;
 #[cfg(feature = "open")]
 pub mod open;
+mod options;
+mod patch;
 mod pipeline;
 mod readback;
 mod recorder;
@@ -30,12 +34,16 @@ mod timing;
 
 pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
 pub use ash;
+pub use breadcrumbs::PassReached;
 pub use context::{AdoptInfo, Context};
 pub use error::GpuError;
 pub use execute::{Execution, Record, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
+pub use health::{Health, HealthCounts};
 pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
 pub use offer::{Missing, Offer};
+pub use options::{DeviceMask, Options};
+pub use patch::{FeatureStorage, patch_features};
 pub use pipeline::{
     BindingDesc, BindingKind, Blend, ComputePipeline, ComputePipelineDesc, DepthState, GraphicsPipeline,
     GraphicsPipelineDesc, MAX_BINDINGS, VertexAttribute, VertexBufferLayout,

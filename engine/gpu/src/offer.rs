@@ -11,7 +11,7 @@ use std::fmt;
 pub struct Offer {
     /// API version of the device (or of the instance, if that is lower).
     pub api_version: u32,
-    /// Device extensions.
+    /// Extensions of instance and device.
     pub extensions: Vec<String>,
     /// Features.
     pub features: FeatureSet,
@@ -118,12 +118,24 @@ mod tests {
     }
 
     #[test]
+    fn below_1_3_the_extensions_stand_in_for_the_core() {
+        let older = Offer { api_version: vk::API_VERSION_1_2, ..plain() };
+        let names = ["VK_KHR_synchronization2", "VK_KHR_dynamic_rendering"];
+        let missing = names.map(|name| Missing::Extension { name });
+        assert_eq!(Requirements::engine().check(&older), missing);
+        let extended = Offer { extensions: names.map(str::to_owned).to_vec(), ..older };
+        assert_eq!(Requirements::engine().check(&extended), []);
+    }
+
+    #[test]
     fn everything_missing_is_named() {
         let missing = Requirements::engine().check(&Offer::default());
         let text: Vec<_> = missing.iter().map(ToString::to_string).collect();
         let expected = [
-            "Vulkan 1.3 (this is 0.0)",
+            "Vulkan 1.2 (this is 0.0)",
             "a queue family with GRAPHICS | COMPUTE (this has )",
+            "extension VK_KHR_synchronization2, not enabled",
+            "extension VK_KHR_dynamic_rendering, not enabled",
             "feature synchronization2, not enabled (the plan's barriers)",
             "feature dynamicRendering, not enabled (rendering into a host's images)",
             "maxPushConstantsSize of 128 (this is 0; settings of a pass)",

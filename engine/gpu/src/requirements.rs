@@ -3,8 +3,11 @@
 //! A host reads [`Requirements`] before it makes its device, and [`Requirements::check`] compares them with an
 //! [`Offer`]: what a physical device can do, or what the host has enabled on it. Neither makes a Vulkan call.
 
+mod json;
+
 use crate::feature::{Feature, FeatureSet};
 use crate::offer::{Missing, Offer};
+use crate::pipeline::{BindingDesc, BindingKind};
 use ash::vk;
 
 /// A feature some room needs or can use.
@@ -12,6 +15,17 @@ use ash::vk;
 pub struct FeatureNeed {
     /// The feature.
     pub feature: Feature,
+    /// Without it the room cannot run; otherwise it only buys something.
+    pub required: bool,
+    /// What it buys, in a few words.
+    pub buys: &'static str,
+}
+
+/// An extension some room needs or can use.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExtensionNeed {
+    /// Its name, such as `VK_EXT_debug_utils`.
+    pub name: &'static str,
     /// Without it the room cannot run; otherwise it only buys something.
     pub required: bool,
     /// What it buys, in a few words.
@@ -38,6 +52,12 @@ macro_rules! limits {
             pub(crate) fn get(self, limits: &vk::PhysicalDeviceLimits) -> u64 {
                 match self { $(Self::$variant => u64::from(limits.$field),)* }
             }
+
+            /// Lowers the limit to `most`; never raises it.
+            pub(crate) fn lower(self, limits: &mut vk::PhysicalDeviceLimits, most: u64) {
+                let most = u32::try_from(most).unwrap_or(u32::MAX);
+                match self { $(Self::$variant => limits.$field = limits.$field.min(most),)* }
+            }
         }
     };
 }
@@ -52,6 +72,7 @@ limits! {
     PerStageUniformBuffers = max_per_stage_descriptor_uniform_buffers, "maxPerStageDescriptorUniformBuffers";
     PerStageSampledImages = max_per_stage_descriptor_sampled_images, "maxPerStageDescriptorSampledImages";
     PerStageStorageImages = max_per_stage_descriptor_storage_images, "maxPerStageDescriptorStorageImages";
+    PerStageSamplers = max_per_stage_descriptor_samplers, "maxPerStageDescriptorSamplers";
     ImageDimension2D = max_image_dimension2_d, "maxImageDimension2D";
     ImageDimension3D = max_image_dimension3_d, "maxImageDimension3D";
     ImageArrayLayers = max_image_array_layers, "maxImageArrayLayers";
@@ -82,8 +103,11 @@ pub struct FormatNeed {
 /// What a device must offer. Plain data: rooms add to it, hosts read it before they make a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Requirements {
-    /// Least API version of instance and device, as `vk::make_api_version` packs it.
+    /// Least API version of instance and device, as `vk::make_api_version` packs it. Below 1.3, required features that
+    /// are core in 1.3 need their extensions ([`Feature::extension_before_1_3`]).
     pub api_version: u32,
+    /// Instance extensions.
+    pub instance_extensions: Vec<ExtensionNeed>,
     /// Device extensions that must be enabled.
     pub extensions: Vec<&'static str>,
     /// Features, required and optional.
@@ -102,7 +126,12 @@ impl Requirements {
         let required = |feature, buys| FeatureNeed { feature, required: true, buys };
         let optional = |feature, buys| FeatureNeed { feature, required: false, buys };
         Self {
-            api_version: vk::API_VERSION_1_3,
+            api_version: vk::API_VERSION_1_2,
+            instance_extensions: vec![ExtensionNeed {
+                name: "VK_EXT_debug_utils",
+                required: false,
+                buys: "names of objects and labels of passes in captures and messages",
+            }],
             extensions: Vec::new(),
             features: vec![
                 required(Feature::Synchronization2, "the plan's barriers"),
@@ -128,6 +157,12 @@ impl Requirements {
     pub fn and(mut self, other: &Self) -> Self {
         self.api_version = self.api_version.max(other.api_version);
         self.queue |= other.queue;
+        for need in &other.instance_extensions {
+            match self.instance_extensions.iter_mut().find(|mine| mine.name == need.name) {
+                Some(mine) => mine.required |= need.required,
+                None => self.instance_extensions.push(need.clone()),
+            }
+        }
         for &extension in &other.extensions {
             if !self.extensions.contains(&extension) {
                 self.extensions.push(extension);
@@ -156,6 +191,39 @@ impl Requirements {
         self
     }
 
+    /// Asks for room for the descriptors of a pipeline with `bindings`, all of them seen by one stage.
+    #[must_use]
+    pub fn with_descriptors(self, bindings: &[BindingDesc]) -> Self {
+        let count = |kind| bindings.iter().filter(|binding| binding.kind == kind).count() as u64;
+        let floor = |(kind, limit)| match count(kind) {
+            0 => None,
+            at_least => Some(LimitNeed { limit, at_least, why: "descriptors of one pipeline" }),
+        };
+        let kinds = [
+            (BindingKind::StorageBuffer, Limit::PerStageStorageBuffers),
+            (BindingKind::UniformBuffer, Limit::PerStageUniformBuffers),
+            (BindingKind::SampledImage, Limit::PerStageSampledImages),
+            (BindingKind::StorageImage, Limit::PerStageStorageImages),
+            (BindingKind::Sampler, Limit::PerStageSamplers),
+        ];
+        let limits = kinds.into_iter().filter_map(floor).collect();
+        let descriptors = Self { limits, ..Self::none() };
+        self.and(&descriptors)
+    }
+
+    /// Nothing at all, to build upon.
+    fn none() -> Self {
+        Self {
+            api_version: 0,
+            instance_extensions: Vec::new(),
+            extensions: Vec::new(),
+            features: Vec::new(),
+            limits: Vec::new(),
+            formats: Vec::new(),
+            queue: vk::QueueFlags::empty(),
+        }
+    }
+
     /// The features a device should enable: all that are required, and the optional ones in `supported`.
     pub fn features_to_enable(&self, supported: FeatureSet) -> FeatureSet {
         let wanted = self.features.iter().filter(|need| need.required || supported.contains(need.feature));
@@ -171,9 +239,14 @@ impl Requirements {
         if !offer.queue.contains(self.queue) {
             missing.push(Missing::Queue { needed: self.queue, offered: offer.queue });
         }
-        let extensions =
-            self.extensions.iter().filter(|&&name| !offer.extensions.iter().any(|have| have == name));
-        missing.extend(extensions.map(|&name| Missing::Extension { name }));
+        let features_below_1_3 = self.features.iter().filter(|need| need.required).filter_map(|need| {
+            let core = offer.api_version >= vk::API_VERSION_1_3;
+            need.feature.extension_before_1_3().filter(|_| !core)
+        });
+        let instance = self.instance_extensions.iter().filter(|need| need.required).map(|need| need.name);
+        let extensions = instance.chain(self.extensions.iter().copied()).chain(features_below_1_3);
+        let lacking = extensions.filter(|&name| !offer.extensions.iter().any(|have| have == name));
+        missing.extend(lacking.map(|name| Missing::Extension { name }));
         let features =
             self.features.iter().filter(|need| need.required && !offer.features.contains(need.feature));
         missing.extend(features.map(|need| Missing::Feature { feature: need.feature, buys: need.buys }));

@@ -1,12 +1,12 @@
 //! Deferred destruction: what is dropped is destroyed once the frames that may still use it are done.
 
-use crate::allocator::{Allocation, Allocator};
+use crate::allocator::Allocation;
 use ash::vk;
 
 /// A Vulkan object that nothing on the CPU refers to any more.
 pub(crate) enum Retired {
-    Buffer { raw: vk::Buffer, memory: Option<Allocation>, ledger: usize, bytes: u64 },
-    Image { raw: vk::Image, views: Vec<vk::ImageView>, memory: Option<Allocation>, ledger: usize, bytes: u64 },
+    Buffer { raw: vk::Buffer, memory: Option<Allocation>, ledger: usize },
+    Image { raw: vk::Image, views: Vec<vk::ImageView>, memory: Option<Allocation>, ledger: usize },
     Views(Vec<vk::ImageView>),
     Pipeline { pipeline: vk::Pipeline, layout: vk::PipelineLayout, set_layout: vk::DescriptorSetLayout },
     Sampler(vk::Sampler),
@@ -14,29 +14,23 @@ pub(crate) enum Retired {
 }
 
 impl Retired {
-    /// Destroys the object, and returns the ledger entry and bytes that are free again.
+    /// Destroys the object, and returns the memory and the ledger entry that are free again.
     ///
     /// # Safety
     /// No work on the device uses the object any more.
-    pub(crate) unsafe fn destroy(
-        self,
-        device: &ash::Device,
-        allocator: &mut dyn Allocator,
-    ) -> Option<(usize, u64)> {
+    pub(crate) unsafe fn destroy(self, device: &ash::Device) -> Option<(Option<Allocation>, usize)> {
         // SAFETY: the caller vouches that the device is done with the object; it came from this device, and
         // this value was its only owner.
         unsafe {
             match self {
-                Self::Buffer { raw, memory, ledger, bytes } => {
+                Self::Buffer { raw, memory, ledger } => {
                     device.destroy_buffer(raw, None);
-                    memory.into_iter().for_each(|memory| allocator.free(memory));
-                    return Some((ledger, bytes));
+                    return Some((memory, ledger));
                 }
-                Self::Image { raw, views, memory, ledger, bytes } => {
+                Self::Image { raw, views, memory, ledger } => {
                     views.into_iter().for_each(|view| device.destroy_image_view(view, None));
                     device.destroy_image(raw, None);
-                    memory.into_iter().for_each(|memory| allocator.free(memory));
-                    return Some((ledger, bytes));
+                    return Some((memory, ledger));
                 }
                 Self::Views(views) => {
                     views.into_iter().for_each(|view| device.destroy_image_view(view, None))

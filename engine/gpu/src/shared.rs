@@ -16,10 +16,36 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub(crate) struct Shared {
     pub functions: Functions,
     pub facts: DeviceFacts,
-    allocator: Mutex<Box<dyn Allocator>>,
+    memory: Mutex<Memory>,
     ledger: Mutex<Ledger>,
     retired: Mutex<VecDeque<(u64, Retired)>>,
     frame: AtomicU64,
+}
+
+/// Where memory comes from, and how much of it is held.
+struct Memory {
+    allocator: Box<dyn Allocator>,
+    /// Bytes of live allocations.
+    held: u64,
+    /// Most bytes that may be held.
+    budget: Option<u64>,
+}
+
+impl Memory {
+    /// Refuses `size` bytes for `what` when they would exceed the budget.
+    fn check_budget(&self, what: &str, size: u64) -> Result<(), GpuError> {
+        match self.budget {
+            Some(budget) if self.held.saturating_add(size) > budget => {
+                Err(GpuError::Budget { what: what.to_owned(), size, held: self.held, budget })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn free(&mut self, allocation: Allocation) {
+        self.held -= allocation.size;
+        self.allocator.free(allocation);
+    }
 }
 
 /// What does not change about a device while it lives.
@@ -41,11 +67,16 @@ pub(crate) fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
-    pub(crate) fn new(facts: DeviceFacts, functions: Functions, allocator: Box<dyn Allocator>) -> Self {
+    pub(crate) fn new(
+        facts: DeviceFacts,
+        functions: Functions,
+        allocator: Box<dyn Allocator>,
+        budget: Option<u64>,
+    ) -> Self {
         Self {
             functions,
             facts,
-            allocator: Mutex::new(allocator),
+            memory: Mutex::new(Memory { allocator, held: 0, budget }),
             ledger: Mutex::default(),
             retired: Mutex::default(),
             frame: AtomicU64::new(0),
@@ -87,11 +118,11 @@ impl Shared {
     /// # Safety
     /// The device is done with the object.
     unsafe fn destroy(&self, object: Retired) {
-        let mut allocator = lock(&self.allocator);
         // SAFETY: the caller's promise is ours.
-        if let Some((entry, bytes)) = unsafe { object.destroy(self.device(), &mut **allocator) } {
-            self.ledger().remove(entry, bytes);
-        }
+        let Some((memory, entry)) = (unsafe { object.destroy(self.device()) }) else { return };
+        let bytes = memory.as_ref().map_or(0, |memory| memory.size);
+        memory.into_iter().for_each(|memory| self.free(memory));
+        self.ledger().remove(entry, bytes);
     }
 
     /// Memory for a resource called `name`.
@@ -110,13 +141,29 @@ impl Shared {
                 allowed: self.facts.max_allocation,
             });
         }
-        lock(&self.allocator)
+        let mut memory = lock(&self.memory);
+        memory.check_budget(name, requirements.size)?;
+        let allocation = memory
+            .allocator
             .allocate(&Request { name, requirements, location, linear })
-            .map_err(|reason| GpuError::Memory { what: name.to_owned(), reason })
+            .map_err(|reason| GpuError::Memory { what: name.to_owned(), reason })?;
+        memory.held += allocation.size;
+        Ok(allocation)
     }
 
     pub(crate) fn free(&self, allocation: Allocation) {
-        lock(&self.allocator).free(allocation);
+        lock(&self.memory).free(allocation);
+    }
+
+    /// Refuses `size` bytes for `what` together, before any of it is made.
+    pub(crate) fn check_budget(&self, what: &str, size: u64) -> Result<(), GpuError> {
+        lock(&self.memory).check_budget(what, size)
+    }
+
+    /// Bytes of the budget that are left.
+    pub(crate) fn memory_left(&self) -> Option<u64> {
+        let memory = lock(&self.memory);
+        memory.budget.map(|budget| budget.saturating_sub(memory.held))
     }
 
     /// Gives an object the name that captures and validation messages show, cut to 127 bytes.

@@ -197,8 +197,7 @@ impl Drop for Inner {
             return;
         }
         let memory = lock(&self.memory).take();
-        let bytes = memory.as_ref().map_or(0, |memory| memory.size);
-        self.shared.retire(Retired::Buffer { raw: self.raw, memory, ledger: self.ledger, bytes });
+        self.shared.retire(Retired::Buffer { raw: self.raw, memory, ledger: self.ledger });
     }
 }
 

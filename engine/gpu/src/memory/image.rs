@@ -99,13 +99,11 @@ impl Drop for Inner {
             self.shared.ledger().remove(self.ledger, 0);
             return self.shared.retire(Retired::Views(views));
         };
-        let bytes = memory.size;
         self.shared.retire(Retired::Image {
             raw: self.raw,
             views,
             memory: Some(memory),
             ledger: self.ledger,
-            bytes,
         });
     }
 }

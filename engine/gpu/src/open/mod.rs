@@ -15,6 +15,7 @@ pub use submit::{FrameLoop, FrameSemaphores};
 use crate::context::{AdoptInfo, Context};
 use crate::error::GpuError;
 use crate::feature::{FeatureSet, FeatureStructs};
+use crate::options::Options;
 use crate::requirements::Requirements;
 use ash::vk;
 use instance::Instance;
@@ -134,6 +135,7 @@ impl OpenDevice {
             allocator: None,
             pipeline_cache: vk::PipelineCache::null(),
             frames_in_flight,
+            options: Options::default(),
         }
     }
 

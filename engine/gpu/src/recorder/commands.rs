@@ -144,7 +144,8 @@ impl Recorder<'_> {
         Ok(())
     }
 
-    /// Records `commands` under a label that captures show; nothing but the commands without VK_EXT_debug_utils.
+    /// Records `commands` under a label that captures show, between breadcrumbs where the host asked for them; nothing
+    /// but the commands without VK_EXT_debug_utils.
     ///
     /// # Errors
     /// Those of `commands`.
@@ -153,15 +154,26 @@ impl Recorder<'_> {
         name: &str,
         commands: impl FnOnce(&mut Self) -> Result<R, GpuError>,
     ) -> Result<R, GpuError> {
-        let Some(debug) = &self.context.shared.functions.debug else { return commands(self) };
+        let crumb = self.begin_crumb(name)?;
+        self.begin_label(name);
+        let result = commands(self);
+        self.end_label();
+        let ended = self.end_crumb(crumb);
+        result.and_then(|result| ended.map(|()| result))
+    }
+
+    fn begin_label(&self, name: &str) {
+        let Some(debug) = &self.context.shared.functions.debug else { return };
         with_c_string(name, |text| {
             let label = vk::DebugUtilsLabelEXT { p_label_name: text, ..Default::default() };
             // SAFETY: the extension is enabled, its functions were probed, the text outlives the call.
             unsafe { (debug.cmd_begin_debug_utils_label_ext)(self.command_buffer, &label) };
         });
-        let result = commands(self);
-        // SAFETY: as above; one label was begun.
+    }
+
+    fn end_label(&self) {
+        let Some(debug) = &self.context.shared.functions.debug else { return };
+        // SAFETY: as in `begin_label`; one label was begun.
         unsafe { (debug.cmd_end_debug_utils_label_ext)(self.command_buffer) };
-        result
     }
 }

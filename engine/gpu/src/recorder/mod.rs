@@ -177,7 +177,7 @@ impl<'a> Recorder<'a> {
         Ok(bound)
     }
 
-    fn outside_rendering(&self, call: &'static str) -> Result<(), GpuError> {
+    pub(crate) fn outside_rendering(&self, call: &'static str) -> Result<(), GpuError> {
         match self.draw.is_rendering() {
             true => Err(GpuError::misuse(call, "not allowed within rendering; end it first")),
             false => Ok(()),
