@@ -11,7 +11,7 @@ use crate::frame::{Environment, Frame, Instance, Light};
 use crate::mesh::MeshId;
 use crate::record::Bindings;
 use crate::relight::Relight;
-use crate::settings::{LightKind, Output};
+use crate::settings::Output;
 use crate::stage::{Need, Resource};
 
 /// Records what it is given into one frame of the bench's context, submits it and waits until it is done.
@@ -194,7 +194,6 @@ impl Bench<'_> {
     /// As [`Relight::new`] and [`Relight::prepare`]; [`RelightError::Values`] for texels that are refused.
     pub fn environment(&self, order: usize, texels: &Texels<'_>) -> Result<Vec<[f32; 3]>, RelightError> {
         let settings = crate::Settings { order, output: Output::Colour, ..Default::default() };
-        debug_assert_eq!(settings.light, LightKind::Uniform);
         let mut relight = Relight::new(self.context, settings)?;
         let mesh = relight.add_mesh(self.context, "one vertex", 1, Some(&vec![0.0; order * order]))?;
         let light = CaseLight::Environment(*texels, DQuat::IDENTITY);

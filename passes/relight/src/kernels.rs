@@ -98,7 +98,7 @@ const CHUNK: u32 = 12;
 
 /// Sums over the columns of each row: environment, column table, row sums.
 #[must_use]
-pub fn environment_rows(order: usize) -> Kernel {
+pub(crate) fn environment_rows(order: usize) -> Kernel {
     Kernel {
         name: "relight environment rows",
         spirv: ENVIRONMENT_ROWS[order - 1],
@@ -109,7 +109,7 @@ pub fn environment_rows(order: usize) -> Kernel {
 
 /// Sums over the rows: row table, row sums, map-frame coefficients.
 #[must_use]
-pub fn environment_bands(order: usize) -> Kernel {
+pub(crate) fn environment_bands(order: usize) -> Kernel {
     Kernel {
         name: "relight environment bands",
         spirv: ENVIRONMENT_BANDS[order - 1],
@@ -120,7 +120,7 @@ pub fn environment_bands(order: usize) -> Kernel {
 
 /// Rotations: source vectors, quaternions, rotated vectors.
 #[must_use]
-pub fn rotate(order: usize) -> Kernel {
+pub(crate) fn rotate(order: usize) -> Kernel {
     Kernel {
         name: "relight rotate",
         spirv: ROTATE[order - 1],
@@ -131,7 +131,7 @@ pub fn rotate(order: usize) -> Kernel {
 
 /// Products of pairs: tensor, left, right, product.
 #[must_use]
-pub fn product(order: usize) -> Kernel {
+pub(crate) fn product(order: usize) -> Kernel {
     Kernel {
         name: "relight product",
         spirv: PRODUCT[order - 1],
@@ -142,7 +142,7 @@ pub fn product(order: usize) -> Kernel {
 
 /// Product matrices of lights: tensor, lights, matrices.
 #[must_use]
-pub fn product_matrix(order: usize) -> Kernel {
+pub(crate) fn product_matrix(order: usize) -> Kernel {
     Kernel {
         name: "relight product matrix",
         spirv: PRODUCT_MATRIX[order - 1],

@@ -143,7 +143,8 @@ impl Rival {
         vertices: u32,
     ) -> Result<(), RelightError> {
         let stride = vertices.next_multiple_of(VERTEX_ALIGNMENT);
-        let vectors: Vec<f32> = (0..vertices * 16).map(|i| (i % 1021) as f32 / 1021.0 - 0.5).collect();
+        let vectors: Vec<f32> =
+            (0..vertices as usize * ORDER * ORDER).map(|i| (i % 1021) as f32 / 1021.0 - 0.5).collect();
         let packed = self.layout.pack(ORDER, self.storage, stride as usize, &vectors);
         let transfer = upload(context, "rival transfer", &packed)?;
         let handle = graph.import_buffer("rival transfer", *transfer.desc(), READ, READ);

@@ -51,6 +51,7 @@ struct Built {
     imports: Imports,
     readback: std::sync::Arc<std::sync::Mutex<Option<Readback>>>,
     rotations: Option<airglow_relight::Rotations>,
+    ranges: Vec<airglow_relight::ResultRange>,
 }
 
 fn build(
@@ -78,7 +79,7 @@ fn build(
         }));
     }
     let plan = graph.compile(&Limits::default()).unwrap();
-    Built { plan, imports, readback, rotations: relit.rotations }
+    Built { plan, imports, readback, rotations: relit.rotations, ranges: relit.ranges }
 }
 
 type Buffer = airglow_graph::Handle<airglow_graph::Buffer>;
@@ -152,6 +153,33 @@ fn both_roads_give_the_same_bits_and_rotations_follow() {
         assert_eq!(run(&fixture, &mut execution, imports), expected, "{method:?}, turned");
         assert!(rotations.set(turn, &[first, second]).is_err(), "two rotations for one instance");
         assert!(rotations.set(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), &[first]).is_err(), "no rotation at all");
+    }
+}
+
+#[test]
+fn every_instance_has_its_own_rotation_and_range() {
+    let fixture = fixture();
+    let (context, texels) = (fixture.context(), texels(13));
+    let sky = sky(&fixture, &texels);
+    let turn = DQuat::from_rotation_y(0.7);
+    for method in [Method::Compute, Method::Fragment] {
+        let settings = Settings { method, ..Settings::default() };
+        let mut relight = Relight::new(context, settings).unwrap();
+        let meshes = [mesh(context, &mut relight, 1030, 14), mesh(context, &mut relight, 70, 15)];
+        let which = [0, 1, 0];
+        let rotations =
+            [DQuat::from_rotation_x(1.0), DQuat::from_rotation_z(0.4), DQuat::from_rotation_y(3.0)];
+        let instance = |i: usize| Instance { rotation: rotations[i], ..Instance::new(meshes[which[i]].0) };
+        let built = build(context, &mut relight, &sky, 1, (0..3).map(instance).collect());
+        let ranges = built.ranges.clone();
+        let results = run_once(&fixture, built);
+        for (i, range) in ranges.iter().enumerate() {
+            let vectors = &meshes[which[i]].1;
+            let expected = without_graph(&fixture, settings, vectors, &texels, turn, rotations[i]);
+            let first = range.offset as usize / 4;
+            assert_eq!(range.vertices as usize, vectors.len() / 16);
+            assert_eq!(results[first..first + range.size as usize / 4], expected, "{method:?} instance {i}");
+        }
     }
 }
 
