@@ -27,6 +27,7 @@ use crate::report::model::Machine;
   airglow render assets/scenes/spot.toml -o spot.png
   airglow render assets/scenes/spot.toml -o spot.exr --size 1920x1080 --stat spot.json --frames 200
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
+  airglow render assets/scenes/demo.toml -o both.png --without relight --split
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
     #[command(flatten)]
@@ -61,6 +62,9 @@ pub struct Arguments {
     /// Leave a pass out: the picture shows what it adds. Without relight, light comes evenly from everywhere.
     #[arg(long, value_enum)]
     without: Option<PassName>,
+    /// With --without: show the left half of the picture without the pass and the right half with it.
+    #[arg(long, requires = "without")]
+    split: bool,
     /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass.
     #[arg(long, conflicts_with = "without")]
     reference: bool,
@@ -126,7 +130,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             renderer.light_by(colours)?;
         }
         let settings = settings(arguments, &scene, &mut renderer)?;
-        let picture = renderer.draw(&settings, arguments.frames as usize)?;
+        let mut picture = renderer.draw(&settings, arguments.frames as usize)?;
+        if arguments.split {
+            picture.replace_left_half(&renderer.draw(&Settings { without_relight: true, ..settings }, 1)?);
+        }
         let stat = stat(device, &settings, &picture);
         Ok((picture, stat))
     })?;
@@ -149,7 +156,7 @@ fn settings(arguments: &Arguments, scene: &Scene, renderer: &mut Renderer<'_>) -
         exposure: 1.0,
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
-        without_relight: arguments.without == Some(PassName::Relight),
+        without_relight: arguments.without == Some(PassName::Relight) && !arguments.split,
     };
     settings.exposure = match (arguments.exposure, scene.exposure) {
         (Some(factor), _) if factor > 0.0 && factor.is_finite() => factor,
