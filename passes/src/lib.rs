@@ -11,5 +11,3 @@ pub use airglow_graph as graph;
 pub use airglow_math as math;
 #[cfg(feature = "relight")]
 pub use airglow_relight as relight;
-#[cfg(feature = "sample")]
-pub use airglow_sample as sample;
