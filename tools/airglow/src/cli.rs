@@ -16,7 +16,7 @@ Exit codes:
   0  done
   1  failed while working (files, Vulkan)
   2  the command line could not be understood
-  3  a check failed (compare --max-flip, stability)
+  3  a check failed (compare --max-flip, stability, --validate)
   4  no device fits --device, or it lacks something that is required
   5  an input was refused (scene, environment, CSV); the message says how to mend it";
 
