@@ -38,3 +38,16 @@ require_toolchain() {
     command -v cargo > /dev/null || fail "cargo is not on the PATH; install a Rust toolchain with rustup"
     command -v cc > /dev/null || install_packages gcc libc6-dev
 }
+
+# Makes tests run on lavapipe, on two threads, whatever the machine has, with its compiled shaders kept between runs.
+use_lavapipe() {
+    # The software renderer and the layers that tests run under; a C++ compiler for the shader compiler of tools/xtask.
+    install_packages libvulkan1 mesa-vulkan-drivers vulkan-validationlayers g++
+    local driver
+    driver=$(find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name 'lvp_icd*.json' 2> /dev/null | head -n 1)
+    [ -n "$driver" ] || fail "no lvp_icd*.json under /usr/share/vulkan/icd.d; mesa-vulkan-drivers should have put it there"
+    export VK_DRIVER_FILES=$driver VK_ICD_FILENAMES=$driver # the second name is that of older loaders
+    export LP_NUM_THREADS=2
+    export MESA_SHADER_CACHE_DIR=$PWD/target/mesa-shader-cache
+    mkdir -p "$MESA_SHADER_CACHE_DIR"
+}

@@ -40,6 +40,22 @@ pub enum Error {
     /// No room of the manifest has the name asked for.
     #[error("no entry of the manifest lies in a room named `{0}`")]
     NoSuchRoom(String),
+    /// A room that cannot be made or removed.
+    #[error("room `{name}`: {problem}")]
+    Room {
+        /// The name given.
+        name: String,
+        /// What is wrong with it, and the mend.
+        problem: &'static str,
+    },
+    /// A program that was started failed.
+    #[error("`{command}` failed: {problem}")]
+    Command {
+        /// The program and its arguments.
+        command: String,
+        /// How it ended.
+        problem: String,
+    },
     /// A mesh that an asset is made from lacks something.
     #[error("{path}: {message}")]
     Asset {

@@ -10,6 +10,8 @@ mod files;
 mod manifest;
 mod mesh;
 mod portability;
+mod room;
+mod room_lines;
 mod shaders;
 mod translate;
 
@@ -45,13 +47,25 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Make a pass's room from the template: crate, shader, tests, and the lines that name it
+    Room {
+        /// One lower-case word, such as `fog`
+        name: String,
+        /// Instead, remove this room: its folders, and the lines that name it
+        #[arg(long)]
+        remove: bool,
+    },
     /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
     Cloister,
 }
 
-/// The workspace this command was built in.
+/// The workspace around the current folder; elsewhere, the one this command was built in.
 fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
+    let is_workspace = |folder: &&Path| folder.join("shaders/glsl/manifest.toml").is_file();
+    let current = std::env::current_dir().unwrap_or_default();
+    let built_in = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let around = current.ancestors().find(is_workspace).or_else(|| built_in.ancestors().nth(2));
+    around.unwrap_or(&current).to_owned()
 }
 
 /// Where includes and the manifest's files are looked up.
@@ -63,6 +77,8 @@ fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
+        Command::Room { name, remove: false } => room::make(&workspace(), &name),
+        Command::Room { name, remove: true } => room::remove(&workspace(), &name),
         Command::Portability { check } => portability::run(&workspace(), check),
         Command::Shaders { room, debug_set: Some(folder), .. } => {
             debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)

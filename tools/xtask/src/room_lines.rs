@@ -1,0 +1,175 @@
+//! The few lines outside a room's folders that name it: in the workspace, the umbrella, the shader manifest and the
+//! command-line tool.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::files;
+
+/// A file that names rooms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The workspace's Cargo.toml: a member and a dependency each.
+    Workspace,
+    /// passes/Cargo.toml: an optional dependency and a feature each.
+    Umbrella,
+    /// passes/src/lib.rs: a re-export each.
+    UmbrellaLibrary,
+    /// The shader manifest: the entries of their shaders.
+    Shaders,
+    /// tools/airglow/Cargo.toml: a feature for each room that the tool uses.
+    Tool,
+}
+
+const PLACES: [(Place, &str); 5] = [
+    (Place::Workspace, "Cargo.toml"),
+    (Place::Umbrella, "passes/Cargo.toml"),
+    (Place::UmbrellaLibrary, "passes/src/lib.rs"),
+    (Place::Shaders, "shaders/glsl/manifest.toml"),
+    (Place::Tool, "tools/airglow/Cargo.toml"),
+];
+
+/// The texts of all places after `change`; nothing is written.
+///
+/// # Errors
+/// A file that cannot be read, or in which `change` finds no place for a line.
+pub fn edit(
+    workspace: &Path,
+    change: impl Fn(Place, &str) -> Option<String>,
+) -> Result<Vec<(PathBuf, String)>, Error> {
+    let edit = |(place, file): (Place, &str)| {
+        let path = workspace.join(file);
+        let text = fs::read_to_string(&path).map_err(|source| Error::io(&path, source))?;
+        let message = "no line of another room to put this room's beside; add it by hand".to_owned();
+        let changed = change(place, &text).ok_or_else(|| Error::Manifest { path: path.clone(), message })?;
+        Ok((path, changed))
+    };
+    PLACES.into_iter().map(edit).collect()
+}
+
+/// Writes what [`edit`] made.
+///
+/// # Errors
+/// The operating system's answer, with the path.
+pub fn write(edited: &[(PathBuf, String)]) -> Result<(), Error> {
+    edited.iter().try_for_each(|(path, text)| files::write_whole(path, text.as_bytes()))
+}
+
+/// The text with the lines of room `name`; `None` where there is no place for them.
+pub fn add(place: Place, text: &str, name: &str) -> Option<String> {
+    match place {
+        Place::Workspace => {
+            let text = insert_below_last(text, "    \"passes", &format!("    \"passes/{name}\","))?;
+            let line = format!("airglow-{name} = {{ path = \"passes/{name}\" }}");
+            let last = text.lines().rfind(|line| line.contains("{ path = \"passes"))?.to_owned();
+            insert_below_last(&text, &last, &line)
+        }
+        Place::Umbrella => {
+            let line = format!("airglow-{name} = {{ workspace = true, optional = true }}");
+            let text = insert_below_last(text, "airglow-", &line)?;
+            let old = text.lines().find(|line| line.starts_with("default = ["))?.to_owned();
+            let items = features(&old).chain([name]).collect::<Vec<_>>();
+            let text = text.replacen(&old, &default_line(&items), 1);
+            Some(format!("{text}# Exposure of colours.\n{name} = [\"dep:airglow-{name}\"]\n"))
+        }
+        Place::UmbrellaLibrary => {
+            Some(format!("{text}#[cfg(feature = \"{name}\")]\npub use airglow_{name} as {name};\n"))
+        }
+        Place::Shaders => Some(format!("{text}\n[[entry]]\nfile = \"{name}/expose.comp\"\n")),
+        Place::Tool => Some(text.to_owned()), // whoever uses the room there adds its feature
+    }
+}
+
+/// The text without the lines of room `name`, and without the comments right above them.
+pub fn remove(place: Place, text: &str, name: &str) -> String {
+    match place {
+        Place::Workspace => {
+            let (member, dependency) = (format!("\"passes/{name}\","), format!("airglow-{name} "));
+            drop_lines(text, |line| line.trim_start() == member || line.starts_with(&dependency))
+        }
+        Place::Umbrella | Place::Tool => {
+            let (dependency, feature) = (format!("airglow-{name} "), format!("{name} = ["));
+            let text = drop_lines(text, |line| line.starts_with(&dependency) || line.starts_with(&feature));
+            let default = |line: &str| {
+                let items: Vec<_> = features(line).filter(|item| *item != name).collect();
+                if line.starts_with("default = [") { default_line(&items) } else { line.to_owned() }
+            };
+            text.lines().map(|line| default(line) + "\n").collect()
+        }
+        Place::UmbrellaLibrary => {
+            let (switch, export) =
+                (format!("#[cfg(feature = \"{name}\")]"), format!("pub use airglow_{name} "));
+            drop_lines(text, |line| line == switch || line.starts_with(&export))
+        }
+        Place::Shaders => {
+            // Entries are paragraphs.
+            let file = format!("file = \"{name}/");
+            let kept = text
+                .trim_end()
+                .split("\n\n")
+                .filter(|entry| !entry.lines().any(|line| line.starts_with(&file)));
+            kept.collect::<Vec<_>>().join("\n\n") + "\n"
+        }
+    }
+}
+
+/// The text with `line` below the last line that starts with `beginning`.
+fn insert_below_last(text: &str, beginning: &str, line: &str) -> Option<String> {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let at = lines.iter().rposition(|found| found.starts_with(beginning))?;
+    lines.insert(at + 1, line);
+    Some(lines.join("\n") + "\n")
+}
+
+/// The text without the lines chosen, and without the comment lines right above each.
+fn drop_lines(text: &str, chosen: impl Fn(&str) -> bool) -> String {
+    let mut kept: Vec<&str> = Vec::new();
+    for line in text.lines() {
+        if !chosen(line) {
+            kept.push(line);
+            continue;
+        }
+        while kept.last().is_some_and(|above| above.starts_with("# ") || above.starts_with("/// ")) {
+            kept.pop();
+        }
+    }
+    kept.join("\n") + "\n"
+}
+
+/// The names quoted in a line.
+fn features(line: &str) -> impl Iterator<Item = &str> {
+    line.split('"').skip(1).step_by(2)
+}
+
+fn default_line(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    format!("default = [{}]", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn removing_what_was_added_gives_each_file_back() {
+        for (place, file) in PLACES {
+            let text = fs::read_to_string(crate::workspace().join(file)).unwrap();
+            let added = add(place, &text, "fog").unwrap();
+            assert_eq!(added != text, place != Place::Tool, "{file}");
+            assert_eq!(remove(place, &added, "fog"), text, "{file}");
+        }
+    }
+
+    #[test]
+    fn a_removed_room_takes_its_comments_along_and_nothing_else() {
+        let text = "[features]\ndefault = [\"fog\", \"rain\"]\n# Fog.\nfog = [\"dep:airglow-fog\"]\n# Rain.\nrain = []\n";
+        let expected = "[features]\ndefault = [\"rain\"]\n# Rain.\nrain = []\n";
+        assert_eq!(remove(Place::Umbrella, text, "fog"), expected);
+        let text =
+            "# All.\n\n# Fog.\n[[entry]]\nfile = \"fog/a.comp\"\n\n[[entry]]\nfile = \"foggy/a.comp\"\n";
+        assert_eq!(remove(Place::Shaders, text, "fog"), "# All.\n\n[[entry]]\nfile = \"foggy/a.comp\"\n");
+        let text = "airglow-fog = 1\nairglow-foggy = 2\n    \"passes/fog\",\n    \"passes/foggy\",\n";
+        assert_eq!(remove(Place::Workspace, text, "fog"), "airglow-foggy = 2\n    \"passes/foggy\",\n");
+    }
+}
