@@ -25,12 +25,21 @@ pub(crate) struct Upload {
 impl Resident {
     /// A storage buffer that will hold `words`.
     pub(crate) fn new(context: &Context, name: &str, words: &[u32]) -> Result<Self, GpuError> {
+        Self::with_usage(context, name, words, BufferUsageFlags::STORAGE_BUFFER)
+    }
+
+    /// A buffer of this usage that will hold `words`.
+    pub(crate) fn with_usage(
+        context: &Context,
+        name: &str,
+        words: &[u32],
+        usage: BufferUsageFlags,
+    ) -> Result<Self, GpuError> {
         let size = 4 * words.len() as u64;
         let made = |usage, location| {
             context.create_buffer(Label::new(OWNER, name), &BufferDesc { size, usage }, location)
         };
-        let target =
-            made(BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_DST, Location::Device)?;
+        let target = made(usage | BufferUsageFlags::TRANSFER_DST, Location::Device)?;
         let staging = made(BufferUsageFlags::TRANSFER_SRC, Location::Upload)?;
         staging.write(0, words)?;
         let pending = Upload { staging: Arc::new(Mutex::new(Some(staging))), target: target.clone() };

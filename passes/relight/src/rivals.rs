@@ -5,13 +5,13 @@ use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{
     Binding, BindingDesc, BindingKind, Buffer, ComputePipelineDesc, Context, Imports, Label, Location, Record,
 };
-use airglow_graph::{Access, BufferDesc, Graph, PassKind};
+use airglow_graph::{Access, BufferDesc, Graph, Handle, PassKind};
 use bytemuck::Pod;
 
 use crate::RelightError;
 use crate::kernels::words;
 use crate::pack::{Layout, VERTEX_ALIGNMENT};
-use crate::resident::OWNER;
+use crate::resident::{OWNER, Resident};
 use crate::settings::Storage;
 use crate::stage::ChunkConstants;
 
@@ -146,9 +146,7 @@ impl Rival {
         let vectors: Vec<f32> =
             (0..vertices as usize * ORDER * ORDER).map(|i| (i % 1021) as f32 / 1021.0 - 0.5).collect();
         let packed = self.layout.pack(ORDER, self.storage, stride as usize, &vectors);
-        let transfer = upload(context, "rival transfer", &packed)?;
-        let handle = graph.import_buffer("rival transfer", *transfer.desc(), READ, READ);
-        imports.buffer(&handle, &transfer);
+        let handle = on_device(context, graph, imports, &packed)?;
         if self.task == Task::Copy {
             let half = self.bytes(vertices) / 2;
             let mut pass = graph.pass(&self.name(), PassKind::Transfer);
@@ -159,7 +157,7 @@ impl Rival {
             }));
             return Ok(());
         }
-        let light = upload(context, "rival light", &[[0.5f32, 0.25, 1.0, 0.0]; ORDER * ORDER])?;
+        let light = uniform(context, "rival light", &[[0.5f32, 0.25, 1.0, 0.0]; ORDER * ORDER])?;
         let pipeline = self.pipeline(context)?;
         let mut pass = graph.pass(&self.name(), PassKind::Compute);
         pass.side_effect().read(&handle, READ);
@@ -212,11 +210,26 @@ impl Rival {
 
 const READ: Access = Access::ComputeStorageRead;
 
-/// A buffer written once from the CPU.
-fn upload<T: Pod>(context: &Context, name: &str, values: &[T]) -> Result<Buffer, RelightError> {
-    let usage =
-        BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::UNIFORM_BUFFER | BufferUsageFlags::TRANSFER_SRC;
-    let desc = BufferDesc { size: size_of_val(values) as u64, usage };
+/// Transfer in device memory, as the pass keeps it: a pass of its own copies it there when it is first recorded.
+fn on_device(
+    context: &Context,
+    graph: &mut Graph<Record>,
+    imports: &mut Imports,
+    packed: &[u32],
+) -> Result<Handle<airglow_graph::Buffer>, RelightError> {
+    let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_SRC;
+    let resident = Resident::with_usage(context, "rival transfer", packed, usage)?;
+    let handle = graph.import_buffer("rival transfer", *resident.buffer().desc(), READ, READ);
+    imports.buffer(&handle, resident.buffer());
+    let mut pass = graph.pass("relight uploads", PassKind::Transfer);
+    let handle = pass.write(handle, Access::TransferDestination);
+    pass.record(Box::new(move |recorder, _| resident.upload().map_or(Ok(()), |copy| copy.record(recorder))));
+    Ok(handle)
+}
+
+/// A uniform buffer written once from the CPU.
+fn uniform<T: Pod>(context: &Context, name: &str, values: &[T]) -> Result<Buffer, RelightError> {
+    let desc = BufferDesc { size: size_of_val(values) as u64, usage: BufferUsageFlags::UNIFORM_BUFFER };
     let buffer = context.create_buffer(Label::new(OWNER, name), &desc, Location::Upload)?;
     buffer.write(0, values)?;
     Ok(buffer)
