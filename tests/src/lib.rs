@@ -8,3 +8,4 @@ pub mod golden;
 pub mod reflect;
 pub mod shim;
 pub mod spirv;
+pub mod workload;

@@ -50,13 +50,20 @@ impl Breadcrumbs {
         (frame % self.trails.len() as u64) as usize
     }
 
-    /// Clears the slot of `frame`, whose last frame is done.
+    /// Gives `frame` its slot, and clears all slots whose frames are done.
     pub(crate) fn begin_frame(&self, frame: u64) -> Result<(), GpuError> {
-        let slot = self.slot(frame);
-        let mut trail = lock(&self.trails[slot]);
-        trail.frame = frame;
-        trail.names.clear();
-        self.words.write(4 * slot as u64, &[0u32])
+        let next = self.slot(frame);
+        for (slot, trail) in self.trails.iter().enumerate() {
+            let mut trail = lock(trail);
+            if trail.frame + self.trails.len() as u64 <= frame {
+                trail.names.clear();
+                self.words.write(4 * slot as u64, &[0u32])?;
+            }
+            if slot == next {
+                trail.frame = frame;
+            }
+        }
+        Ok(())
     }
 
     /// The newest frame's number, as a name.

@@ -158,8 +158,9 @@ impl Recorder<'_> {
         self.begin_label(name);
         let result = commands(self);
         self.end_label();
-        let ended = self.end_crumb(crumb);
-        result.and_then(|result| ended.map(|()| result))
+        let result = result?;
+        self.end_crumb(crumb)?;
+        Ok(result)
     }
 
     fn begin_label(&self, name: &str) {
