@@ -1,9 +1,9 @@
 //! Phase 7: the barriers between epochs, from entry to exit, subresource by subresource.
 
 use super::coalesce::coalesce;
-use super::epochs::{Epoch, Slot, push};
+use super::epochs::{EVERYWHERE, Epoch, NOWHERE, Scope, Slot, push};
 use super::lives::contains;
-use crate::access::State;
+use crate::access::{State, writes};
 use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 use crate::options::Limits;
@@ -41,11 +41,12 @@ pub(super) fn barriers(declaration: &Declaration, order: &[usize], limits: &Limi
         let (mips, layers) = resource.desc.subresources();
         let whole = ImageRange { base_mip: 0, mips, base_layer: 0, layers };
         for (mip, layer) in whole.subresources() {
-            let epochs = epochs_at(declaration, order, id, (mip, layer));
             let (entry, exit) = ends(declaration, id, (mip, layer));
             let range = ImageRange { base_mip: mip, mips: 1, base_layer: layer, layers: 1 };
             let mut row = Row { plan: &mut plan, id, desc: &resource.desc, range, limits };
-            row.emit(epochs, entry, exit);
+            let found = entry.filter(|entry| !row.is_foreign(entry.queue_family)).map(Epoch::of_host);
+            let epochs = epochs_at(declaration, order, id, (mip, layer), found.as_ref());
+            row.emit(epochs, entry, exit, found.as_ref());
         }
     }
     coalesce(&mut plan.acquires.images);
@@ -58,12 +59,18 @@ pub(super) fn barriers(declaration: &Declaration, order: &[usize], limits: &Limi
 }
 
 /// What the passes do with one subresource.
-fn epochs_at(declaration: &Declaration, order: &[usize], id: ResourceId, at: (u32, u32)) -> Vec<Epoch> {
+fn epochs_at(
+    declaration: &Declaration,
+    order: &[usize],
+    id: ResourceId,
+    at: (u32, u32),
+    found: Option<&Epoch>,
+) -> Vec<Epoch> {
     let mut epochs = Vec::new();
     for (step, pass) in order.iter().enumerate() {
         let uses = declaration.passes[*pass].uses.iter();
         for used in uses.filter(|used| used.resource == id && contains(used.range, at)) {
-            push(&mut epochs, Epoch::of_use(step, used));
+            push(&mut epochs, Epoch::of_use(step, used), found);
         }
     }
     epochs
@@ -89,22 +96,30 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    fn emit(&mut self, mut epochs: Vec<Epoch>, entry: Option<State>, exit: Option<State>) {
+    fn emit(
+        &mut self,
+        mut epochs: Vec<Epoch>,
+        entry: Option<State>,
+        exit: Option<State>,
+        found: Option<&Epoch>,
+    ) {
         if epochs.is_empty() && (entry.is_none() || entry == exit) {
             return;
         }
         let release_to = exit.map(|state| state.queue_family).filter(|family| self.is_foreign(*family));
         if let Some(exit) = exit {
-            add_exit(&mut epochs, entry, exit, release_to.is_some());
+            add_exit(&mut epochs, entry, exit, release_to.is_some(), found);
         }
-        let before = match entry {
-            Some(entry) => self.enter(entry, epochs.first()),
-            None => before_transient(epochs.last(), exit.is_some_and(|exit| self.waits(exit))),
+        let (before, visible) = match entry {
+            Some(entry) => self.enter(entry, epochs.first(), release_to.is_some()),
+            None => (before_transient(epochs.last(), exit.is_some_and(|exit| self.waits(exit))), NOWHERE),
         };
+        self.between(before, visible, &mut epochs);
         let last = epochs.last().copied().unwrap_or(before);
-        self.between(before, &mut epochs);
-        if let Some(family) = release_to {
-            self.release(&last, family);
+        match (release_to, entry, exit) {
+            (Some(family), ..) => self.release(&last, family),
+            (None, Some(_), Some(exit)) => self.cover_reads(epochs.last(), exit),
+            _ => {}
         }
     }
 
@@ -118,38 +133,56 @@ impl Row<'_> {
     }
 
     /// The epoch before the plan; takes ownership first where another family has it.
-    fn enter(&mut self, entry: State, first: Option<&Epoch>) -> Epoch {
+    fn enter(&mut self, entry: State, first: Option<&Epoch>, released: bool) -> (Epoch, Scope) {
         let host = Epoch::of_host(entry);
         if !self.is_foreign(entry.queue_family) {
-            return host;
+            let visible = if host.is_idle() { EVERYWHERE } else { (host.stage, host.access) };
+            return (host, visible);
         }
-        // Waiting at the stages of the first use chains with a semaphore that the host waits for there.
+        // Waiting at stages of the first use chains with a semaphore that the host waits for there.
         let chained = first.map(|first| first.stage).filter(|stage| !stage.is_empty());
         let stage = chained.unwrap_or(PipelineStageFlags2::ALL_COMMANDS);
         let same_layout = first.filter(|first| first.layout == entry.layout);
         let access = same_layout.map_or(AccessFlags2::NONE, |first| first.access);
+        let stage = if same_layout.is_some() { stage } else { one_of(stage) };
         let acquired = Epoch { stage, access: AccessFlags2::NONE, ..host };
-        let barrier = self.barrier(&acquired, &Epoch { access, ..acquired }, Cause::Acquire);
+        let opened = if first.is_none() && !released { NOWHERE } else { (stage, access) };
+        let barrier = self.barrier(&acquired, &acquired, opened, Cause::Acquire);
         let families = (entry.queue_family, self.limits.queue_family);
         push_barrier(&mut self.plan.acquires, self.desc, with_families(barrier, families));
         // The acquire itself orders a first use in the same layout; a layout change must wait for the acquire.
-        if same_layout.is_some() { Epoch::of_host(State::idle(entry.layout)) } else { acquired }
+        let before = if same_layout.is_some() { Epoch::of_host(State::idle(entry.layout)) } else { acquired };
+        (before, (stage, access))
+    }
+
+    /// A host that waits for an import's exit state has to have waited for every read of the plan too, or its next
+    /// write would race with them.
+    fn cover_reads(&mut self, last: Option<&Epoch>, exit: State) {
+        let Some(last) = last.filter(|last| !last.writes() && !exit.stage.is_empty()) else { return };
+        let others = last.stage & !exit.stage;
+        if !others.is_empty() && !writes(exit.access) {
+            let reads = Epoch { stage: others, ..*last };
+            let barrier =
+                self.barrier(&reads, &reads, (exit.stage, AccessFlags2::NONE), Cause::ReadAfterRead);
+            push_barrier(&mut self.plan.exits, self.desc, barrier);
+        }
     }
 
     fn release(&mut self, last: &Epoch, family: u32) {
-        let nothing = Epoch { stage: PipelineStageFlags2::NONE, access: AccessFlags2::NONE, ..*last };
-        let mut barrier = self.barrier(last, &nothing, Cause::Release);
-        barrier.src_access = last.written();
+        let barrier = self.barrier(last, last, NOWHERE, Cause::Release);
         let families = (self.limits.queue_family, family);
         push_barrier(&mut self.plan.releases, self.desc, with_families(barrier, families));
     }
 
-    /// A barrier between each epoch and the next, where one is needed.
-    fn between(&mut self, before: Epoch, epochs: &mut [Epoch]) {
+    /// A barrier between each epoch and the next, where one is needed. `visible` is where the contents are visible
+    /// before the first.
+    fn between(&mut self, before: Epoch, visible: Scope, epochs: &mut [Epoch]) {
+        let mut visible = [visible, NOWHERE];
         let mut previous = before;
         for epoch in epochs {
             let layout_changes = previous.layout != epoch.layout;
-            if previous.covers(epoch) {
+            let reads_on = !layout_changes && !previous.writes() && !epoch.writes();
+            if reads_on && epoch.opens.0.is_empty() {
                 // Both read: whoever writes next waits for both.
                 epoch.stage |= previous.stage;
             } else if layout_changes || !previous.is_idle() {
@@ -160,18 +193,33 @@ impl Row<'_> {
                     (false, true) => Cause::WriteAfterRead,
                     (false, false) => Cause::ReadAfterRead,
                 };
-                let barrier = self.barrier(&previous, epoch, cause);
+                let to = match (reads_on, layout_changes || previous.writes()) {
+                    (true, _) => epoch.opens,
+                    (false, true) => (epoch.stage, epoch.access),
+                    // The earlier write is available already, and perhaps visible.
+                    (false, false) => (epoch.stage, epoch.unseen(&visible)),
+                };
+                visible = if reads_on { [visible[0], to] } else { [to, NOWHERE] };
+                let mut barrier = self.barrier(&previous, epoch, to, cause);
+                if reads_on && epoch.begin != Slot::End && one_of(previous.stage) != previous.stage {
+                    // To see what was written, one stage is enough; whoever writes next waits for all.
+                    barrier.src_stage = one_of(previous.stage);
+                    epoch.stage |= previous.stage;
+                }
                 push_barrier(self.plan.slot(epoch.begin), self.desc, barrier);
             }
             previous = *epoch;
         }
     }
 
-    fn barrier(&self, from: &Epoch, to: &Epoch, cause: Cause) -> ImageBarrier {
-        let layout_changes = from.layout != to.layout;
-        // A write after reads needs no memory dependency: the earlier write is available already.
-        let memory = from.writes() || layout_changes || to.reads_before() || cause == Cause::Acquire;
-        let discards = layout_changes && !to.keeps;
+    fn barrier(
+        &self,
+        from: &Epoch,
+        to: &Epoch,
+        (dst_stage, dst_access): Scope,
+        cause: Cause,
+    ) -> ImageBarrier {
+        let discards = from.layout != to.layout && !to.keeps;
         ImageBarrier {
             resource: self.id,
             range: self.range,
@@ -181,8 +229,8 @@ impl Row<'_> {
             },
             src_stage: from.stage,
             src_access: from.written(),
-            dst_stage: to.stage,
-            dst_access: if memory { to.access } else { AccessFlags2::NONE },
+            dst_stage,
+            dst_access,
             old_layout: if discards { ImageLayout::UNDEFINED } else { from.layout },
             new_layout: to.layout,
             src_queue_family: QUEUE_FAMILY_IGNORED,
@@ -194,7 +242,13 @@ impl Row<'_> {
 }
 
 /// Appends the host's use after the plan. A state with nothing pending adds a barrier only for its layout.
-fn add_exit(epochs: &mut Vec<Epoch>, entry: Option<State>, exit: State, released: bool) {
+fn add_exit(
+    epochs: &mut Vec<Epoch>,
+    entry: Option<State>,
+    exit: State,
+    released: bool,
+    found: Option<&Epoch>,
+) {
     let mut host = Epoch::of_host(exit);
     let last = epochs.last().copied().or(entry.map(Epoch::of_host));
     let Some(last) = last else { return };
@@ -205,13 +259,19 @@ fn add_exit(epochs: &mut Vec<Epoch>, entry: Option<State>, exit: State, released
         // The taking family sees to its own accesses; here only the layout is brought about.
         // Some stage has to stand between the layout change and the release.
         let idle = last.stage.is_empty();
-        let stage = if idle { PipelineStageFlags2::ALL_COMMANDS } else { last.stage };
+        let stage = if idle { PipelineStageFlags2::ALL_COMMANDS } else { one_of(last.stage) };
         host = Epoch { stage, access: AccessFlags2::NONE, ..host };
     }
     let nothing_to_do = host.layout == last.layout && (released || host.is_idle());
     if !nothing_to_do {
-        push(epochs, host);
+        push(epochs, host, found);
     }
+}
+
+/// One stage is enough for barriers to chain through.
+fn one_of(stages: PipelineStageFlags2) -> PipelineStageFlags2 {
+    let bits = stages.as_raw();
+    PipelineStageFlags2::from_raw(bits & bits.wrapping_neg())
 }
 
 /// What the execution of the same plan before this one left of a transient: contents nobody wants, and uses

@@ -4,9 +4,18 @@
 //! one barrier serves all reads of what was written.
 
 use crate::access::State;
-use crate::access::{WRITES, reads, writes};
+use crate::access::{WRITES, writes};
 use crate::pass::Use;
 use ash::vk::{AccessFlags2, ImageLayout, PipelineStageFlags2};
+
+/// Stages, and accesses in them.
+pub(super) type Scope = (PipelineStageFlags2, AccessFlags2);
+
+/// The scope of nothing.
+pub(super) const NOWHERE: Scope = (PipelineStageFlags2::NONE, AccessFlags2::NONE);
+/// The scope of every access that can be.
+pub(super) const EVERYWHERE: Scope =
+    (PipelineStageFlags2::from_raw(u64::MAX), AccessFlags2::from_raw(u64::MAX));
 
 /// Where in the plan an epoch begins, and so where the barrier before it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,6 +33,8 @@ pub(super) struct Epoch {
     pub stage: PipelineStageFlags2,
     pub access: AccessFlags2,
     pub layout: ImageLayout,
+    /// The stages and accesses that what came before is not yet visible to.
+    pub opens: Scope,
     /// Whether contents from before matter.
     pub keeps: bool,
 }
@@ -31,11 +42,13 @@ pub(super) struct Epoch {
 impl Epoch {
     /// One pass's use of an image (or of a buffer, which has no layout).
     pub fn of_use(step: usize, used: &Use) -> Self {
+        let (stage, access) = (used.access.stage(), used.access.access());
         Self {
             begin: Slot::Step(step),
             last: Some(step),
-            stage: used.access.stage(),
-            access: used.access.access(),
+            stage,
+            access,
+            opens: (stage, access),
             layout: if used.is_image { used.access.layout() } else { ImageLayout::UNDEFINED },
             keeps: used.keeps,
         }
@@ -44,7 +57,7 @@ impl Epoch {
     /// The host's use before or after the plan.
     pub fn of_host(state: State) -> Self {
         let State { stage, access, layout, .. } = state;
-        Self { begin: Slot::End, last: None, stage, access, layout, keeps: true }
+        Self { begin: Slot::End, last: None, stage, access, layout, opens: (stage, access), keeps: true }
     }
 
     pub fn writes(&self) -> bool {
@@ -56,9 +69,11 @@ impl Epoch {
         self.access & WRITES
     }
 
-    /// Whether it reads what was there before it.
-    pub fn reads_before(&self) -> bool {
-        self.keeps && reads(self.access)
+    /// The accesses that read what was there before, unless all of it is visible in one of `scopes` already.
+    pub fn unseen(&self, scopes: &[Scope]) -> AccessFlags2 {
+        let reads = if self.keeps { self.access & !WRITES } else { AccessFlags2::NONE };
+        let seen = |(stage, access): &Scope| stage.contains(self.stage) && access.contains(reads);
+        if scopes.iter().any(seen) { AccessFlags2::NONE } else { reads }
     }
 
     /// Whether nothing of it is pending: the host has synchronised, or will.
@@ -82,14 +97,20 @@ impl Epoch {
         if joins {
             self.stage |= other.stage;
             self.access |= other.access;
+            self.opens.0 |= other.opens.0;
+            self.opens.1 |= other.opens.1;
             self.last = other.last.or(self.last);
         }
         joins
     }
 }
 
-/// Appends an epoch to a row, merging reads.
-pub(super) fn push(epochs: &mut Vec<Epoch>, next: Epoch) {
+/// Appends an epoch to a row, merging reads. `found` is what the host left; where it reads, the plan may.
+pub(super) fn push(epochs: &mut Vec<Epoch>, mut next: Epoch, found: Option<&Epoch>) {
+    let still = |found: &&Epoch| epochs.iter().all(|e| !e.writes() && e.layout == found.layout);
+    if found.filter(still).is_some_and(|found| found.covers(&next)) {
+        next.opens = NOWHERE;
+    }
     if !epochs.last_mut().is_some_and(|last| last.merge(&next)) {
         epochs.push(next);
     }
