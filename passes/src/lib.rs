@@ -1,8 +1,7 @@
 //! Real-time lighting passes for Vulkan that an engine embeds in its own device.
 //!
-//! One room, one feature: [`relight`] is relighting by precomputed radiance transfer. What the rooms share is
-//! re-exported beside them: the graph a frame is declared in, the layer over the host's device, the bake and the
-//! mathematics.
+//! One room, one feature of the same name. What the rooms share is re-exported beside them: the graph a frame is
+//! declared in, the layer over the host's device, the bake and the mathematics.
 #![forbid(unsafe_code)]
 
 pub use airglow_bake as bake;

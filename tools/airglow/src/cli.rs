@@ -2,7 +2,9 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, compare, devices, eval, explain, plan, render, report, stability};
+use crate::commands::{bake, compare, devices};
+#[cfg(feature = "relight")]
+use crate::commands::{eval, explain, plan, render, report, stability};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -53,11 +55,17 @@ pub struct Global {
 pub enum Command {
     Devices(devices::Arguments),
     Bake(bake::Arguments),
+    #[cfg(feature = "relight")]
     Render(render::Arguments),
     Compare(compare::Arguments),
+    #[cfg(feature = "relight")]
     Plan(plan::Arguments),
+    #[cfg(feature = "relight")]
     Report(report::Arguments),
+    #[cfg(feature = "relight")]
     Stability(stability::Arguments),
+    #[cfg(feature = "relight")]
     Explain(explain::Arguments),
+    #[cfg(feature = "relight")]
     Eval(eval::Arguments),
 }

@@ -1,5 +1,6 @@
 //! The command as its users see it: exit codes, messages, and a whole road on a small scene.
 
+#![cfg(feature = "relight")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
 use std::path::{Path, PathBuf};

@@ -3,12 +3,18 @@
 pub mod bake;
 pub mod compare;
 pub mod devices;
+#[cfg(feature = "relight")]
 pub mod eval;
+#[cfg(feature = "relight")]
 pub mod explain;
+#[cfg(feature = "relight")]
 pub mod plan;
+#[cfg(feature = "relight")]
 pub mod render;
+#[cfg(feature = "relight")]
 pub mod report;
 pub mod scene;
+#[cfg(feature = "relight")]
 pub mod stability;
 
 use crate::cli::{Cli, Command};
@@ -21,12 +27,18 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
     match cli.command {
         Command::Devices(arguments) => devices::run(&arguments, output),
         Command::Bake(arguments) => bake::run(&arguments, output),
+        #[cfg(feature = "relight")]
         Command::Render(arguments) => render::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
+        #[cfg(feature = "relight")]
         Command::Plan(arguments) => plan::run(&arguments, global, output),
+        #[cfg(feature = "relight")]
         Command::Report(arguments) => report::run(&arguments, global, output),
+        #[cfg(feature = "relight")]
         Command::Stability(arguments) => stability::run(&arguments, global, output),
+        #[cfg(feature = "relight")]
         Command::Explain(arguments) => explain::run(&arguments, global, output),
+        #[cfg(feature = "relight")]
         Command::Eval(arguments) => eval::run(&arguments, global, output),
     }
 }

@@ -1,6 +1,7 @@
 //! A pass's own code on rows of parameters: a table in, the same table with result columns out.
 
 pub mod number;
+#[cfg(feature = "relight")]
 pub mod relight;
 pub mod table;
 

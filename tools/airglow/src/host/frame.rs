@@ -60,7 +60,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             _ => Light::None,
         };
         let instances = renderer.instances.iter().map(|instance| Instance {
-            rotation: instance.rotation,
+            orientation: instance.orientation,
             ..Instance::new(renderer.meshes[instance.transfer])
         });
         let frame = Frame { light, instances: instances.collect(), target: None };

@@ -5,12 +5,16 @@
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
 pub mod device;
+#[cfg(feature = "relight")]
 pub mod draw;
 pub mod environment_samples;
+#[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
+#[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;
+#[cfg(feature = "relight")]
 pub mod shaders;
 pub mod texture;
 pub mod transfer;

@@ -229,7 +229,8 @@ impl<'d> Renderer<'d> {
         let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
         // A queue without timestamps draws all the same.
         let mut timing = Timing::new(context, passes, WARM_UP, frames).ok();
-        let instances: Vec<DQuat> = self.instances.iter().map(|instance| instance.rotation).collect();
+        let instances: Vec<Orientation> =
+            self.instances.iter().map(|instance| instance.orientation).collect();
         let turn_light = |frame: usize| {
             // One plan for all frames: only the rotation of the light and of the view's sky changes.
             let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;

@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use airglow::relight::Orientation;
 use airglow_bake::cache::{CacheKey, Precision, Source, bake_cached};
 use airglow_bake::{LightFrame, Mesh, Occluder, Report, Settings, Threads, Transfer, unshadowed};
 use airglow_scene::{Instance, Quality, Scene, Shadow};
-use glam::{DQuat, Mat4};
+use glam::Mat4;
 use serde::Serialize;
 
 use super::holes;
@@ -30,7 +31,7 @@ pub struct InstanceTransfer {
     /// Index into [`SceneTransfer::transfers`].
     pub transfer: usize,
     /// World from the space the transfer is in: the identity for a bake in world space.
-    pub rotation: DQuat,
+    pub orientation: Orientation,
 }
 
 /// What a bake took.
@@ -83,8 +84,8 @@ fn jobs<'a>(
     let mut shared: Vec<Option<usize>> = vec![None; scene.meshes.len()];
     let mut instances = Vec::with_capacity(scene.instances.len());
     for (number, instance) in scene.instances.iter().enumerate() {
-        let rotation = if shadow == Shadow::Scene { None } else { shared_rotation(instance) };
-        let transfer = match (rotation, shared[instance.mesh]) {
+        let orientation = if shadow == Shadow::Scene { None } else { shared_orientation(instance) };
+        let transfer = match (orientation, shared[instance.mesh]) {
             (Some(_), Some(job)) => job,
             (Some(_), None) => {
                 jobs.push(object_job(scene, number, shadow, holes));
@@ -96,16 +97,16 @@ fn jobs<'a>(
                 jobs.len() - 1
             }
         };
-        instances.push(InstanceTransfer { transfer, rotation: rotation.unwrap_or(DQuat::IDENTITY) });
+        instances.push(InstanceTransfer { transfer, orientation: orientation.unwrap_or(Orientation::IDENTITY) });
     }
     (jobs, instances)
 }
 
-/// World from object, where that is a rotation and a uniform scale; a mirrored or stretched instance is baked in
+/// World from object, where that is a rotation, a mirroring and a uniform scale; a stretched instance is baked in
 /// world space instead.
-fn shared_rotation(instance: &Instance) -> Option<DQuat> {
+fn shared_orientation(instance: &Instance) -> Option<Orientation> {
     let frame = LightFrame::of_instance(instance.transform).ok()?;
-    (!frame.inverted).then(|| frame.world_to_object.conjugate())
+    Some(Orientation { rotation: frame.world_to_object.conjugate(), inverted: frame.inverted })
 }
 
 /// The mesh of an instance as the bake takes it.

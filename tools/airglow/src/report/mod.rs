@@ -6,6 +6,7 @@ pub mod interleave;
 pub mod model;
 pub mod pareto;
 pub mod plot;
+#[cfg(feature = "relight")]
 pub mod relight;
 pub mod sweep;
 pub mod table;

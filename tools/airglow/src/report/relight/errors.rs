@@ -25,8 +25,7 @@ pub fn colours(
     let count = workload.vertex_count as u32;
     let mesh = relight.add_mesh(bench.context, "workload", count, Some(&vectors)).map_err(Failure::work)?;
     let light = CaseLight::Uniform(&light, DQuat::IDENTITY);
-    let case = Case { light, mesh, rotation: DQuat::IDENTITY, visibility: None };
-    let values = bench.results(&mut relight, &case).map_err(Failure::work)?;
+    let values = bench.results(&mut relight, &Case::new(light, mesh)).map_err(Failure::work)?;
     Ok(values.as_chunks::<4>().0.iter().take(workload.vertex_count).map(|&[r, g, b, _]| [r, g, b]).collect())
 }
 
