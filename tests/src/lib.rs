@@ -5,6 +5,7 @@ pub mod compare;
 pub mod data;
 pub mod device;
 pub mod golden;
+pub mod plan;
 pub mod reflect;
 pub mod shim;
 pub mod spirv;

@@ -120,9 +120,7 @@ impl Workload {
             recorder.draw_indexed(0..COUNT, 0, 0..1)?;
             recorder.end_rendering()
         }));
-        let plan = graph
-            .compile(&context.graph_limits())
-            .map_err(|error| GpuError::misuse("the workload", error.to_string()))?;
+        let plan = crate::plan::compile(graph, &context.graph_limits());
         let mut imports = Imports::new();
         imports.image(&target, &picture);
         let execution = Execution::prepare(context, plan)?;

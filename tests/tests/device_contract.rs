@@ -200,7 +200,8 @@ fn timestamps_come_frames_later_without_waiting() {
             record_colours(recorder, &pipeline, resources.buffer(&target)?, 1.0)
         }));
     }
-    let mut execution = Execution::prepare(context, graph.compile(&context.graph_limits()).unwrap()).unwrap();
+    let mut execution =
+        Execution::prepare(context, airglow_tests::plan::compile(graph, &context.graph_limits())).unwrap();
     let mut imports = Imports::new();
     imports.buffer(&imported, &buffer);
 

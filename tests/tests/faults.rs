@@ -160,7 +160,7 @@ fn a_budget_is_met_or_refused_with_what_would_fit() {
         pass.create_buffer(name, BufferDesc::new(3000), Access::ComputeStorageWrite);
         pass.side_effect().record(Box::new(|_, _| Ok(())));
     }
-    let plan = graph.compile(&context.graph_limits()).unwrap();
+    let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
     assert_eq!(plan.bytes().transient, 6000);
     let error = Execution::prepare(&context, plan).map(drop).unwrap_err().to_string();
     assert!(error.contains("the plan's transient resources needs 6000 bytes"), "{error}");

@@ -7,6 +7,7 @@ use airglow_gpu::{
 };
 use airglow_graph::{Access, BufferDesc, Graph, PassKind};
 use airglow_tests::device::fixture;
+use airglow_tests::plan::compile;
 use airglow_tests::spirv::words;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -68,7 +69,7 @@ fn a_frame_allocates_nothing_after_warm_up() {
             recorder.dispatch([1, 1, 1])
         }));
     }
-    let plan = graph.compile(&context.graph_limits()).unwrap();
+    let plan = compile(graph, &context.graph_limits());
     let mut execution = Execution::prepare(context, plan).unwrap();
     let imports = Imports::new();
     let mut timing = Timing::new(context, PASSES as u32, 0, 4).unwrap();

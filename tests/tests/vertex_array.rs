@@ -1,5 +1,5 @@
 //! Rendering to a vertex array, both ways: a compute pass writes the vertex buffer, or a fragment pass renders a packed
-//! rectangle that is copied into it. Both are drawn, read back, and give the same bits.
+//! rectangle that is copied into it. Both are drawn, read back, and give the same bits, in every legal order.
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
@@ -7,10 +7,12 @@ use airglow_gpu::{
     GpuError, GraphicsPipelineDesc, Imports, Label, Load, Record, Rendering, VertexAttribute,
     VertexBufferLayout,
 };
-use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, ImageDesc, Limits, PassKind, State};
+use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, Image, ImageDesc, Options, PassKind, State};
 use airglow_tests::compare::{assert_close, assert_same_bits};
 use airglow_tests::device::{Fixture, fixture};
+use airglow_tests::plan::compile_with;
 use airglow_tests::spirv::words;
+use std::collections::BTreeSet;
 
 /// Vertices; not a multiple of the width, so that the copy ends within a row.
 const COUNT: u32 = 1000;
@@ -104,9 +106,13 @@ fn add_fragment(context: &Context, graph: &mut Graph<Record>) -> Result<Handle<B
 
 type Road = fn(&Context, &mut Graph<Record>) -> Result<Handle<Buffer>, GpuError>;
 
-/// Draws each vertex as a point on its own pixel and reads the picture back.
-fn draw(fixture: &Fixture, road: Road) -> Result<Vec<f32>, GpuError> {
-    let context = fixture.context();
+/// Adds a draw of each vertex as a point on its own pixel.
+fn add_draw(
+    context: &Context,
+    graph: &mut Graph<Record>,
+    target: Handle<Image>,
+    colours: Handle<Buffer>,
+) -> Result<(), GpuError> {
     let (vertex, fragment) = (words("test/points_vertex"), words("test/points_fragment"));
     let attributes = [VertexAttribute { location: 0, format: FORMAT, offset: 0 }];
     let colour_buffer =
@@ -115,13 +121,6 @@ fn draw(fixture: &Fixture, road: Road) -> Result<Vec<f32>, GpuError> {
         vertex_buffers: &[colour_buffer],
         ..draw_desc("points", &vertex, &fragment, vk::PrimitiveTopology::POINT_LIST)
     })?;
-    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
-    let desc = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, FORMAT) };
-    let picture = context.create_image(Label::new("test", "picture"), &desc)?;
-
-    let mut graph: Graph<Record> = Graph::new();
-    let target = graph.import_image("picture", desc, State::UNDEFINED, Access::TransferSource);
-    let colours = road(context, &mut graph)?;
     let mut pass = graph.pass("draw", PassKind::Graphics);
     pass.read(&colours, Access::VertexBuffer);
     let drawn = pass.write(target, Access::ColorAttachmentWrite);
@@ -135,29 +134,52 @@ fn draw(fixture: &Fixture, road: Road) -> Result<Vec<f32>, GpuError> {
         recorder.draw(0..COUNT, 0..1)?;
         recorder.end_rendering()
     }));
-    let plan = graph.compile(&Limits::default()).expect("the graph is sound");
-    let mut execution = Execution::prepare(context, plan)?;
+    Ok(())
+}
+
+/// A picture by each road, all in one frame, and the order its passes ran in.
+fn draw(
+    fixture: &Fixture,
+    roads: &[Road],
+    seed: Option<u64>,
+) -> Result<(Vec<Vec<f32>>, Vec<String>), GpuError> {
+    let context = fixture.context();
+    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+    let desc = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, FORMAT) };
+    let mut graph: Graph<Record> = Graph::new();
     let mut imports = Imports::new();
-    imports.image(&target, &picture);
-    // Twice, so that the second recording meets what the first left behind.
-    let mut picture_back = None;
-    for _ in 0..2 {
-        let readback = fixture.device().run(context, |recorder| {
-            // SAFETY: a recording command buffer of this frame; the picture's contents do not matter on entry.
-            unsafe { execution.record(context, recorder.command_buffer(), &imports, None)? };
-            recorder.read_back_image(&picture.full_view()?)
-        })?;
-        picture_back = Some(readback.texels()?);
+    let mut pictures = Vec::new();
+    for road in roads {
+        let picture = context.create_image(Label::new("test", "picture"), &desc)?;
+        let target = graph.import_image("picture", desc, State::UNDEFINED, Access::TransferSource);
+        let colours = road(context, &mut graph)?;
+        add_draw(context, &mut graph, target, colours)?;
+        imports.image(&target, &picture);
+        pictures.push(picture);
     }
-    Ok(picture_back.into_iter().flatten().flatten().collect())
+    let options = Options { seed, ..Options::default() };
+    let plan = compile_with(graph, &context.graph_limits(), &options);
+    let order = plan.steps().iter().map(|step| step.name.to_string()).collect();
+    let mut execution = Execution::prepare(context, plan)?;
+    // Twice, so that the second recording meets what the first left behind.
+    let mut pictures_back = Vec::new();
+    for _ in 0..2 {
+        let readbacks = fixture.device().run(context, |recorder| {
+            // SAFETY: a recording command buffer of this frame; the pictures' contents do not matter on entry.
+            unsafe { execution.record(context, recorder.command_buffer(), &imports, None)? };
+            pictures.iter().map(|p| recorder.read_back_image(&p.full_view()?)).collect::<Result<Vec<_>, _>>()
+        })?;
+        pictures_back = readbacks.iter().map(|r| r.texels()).collect::<Result<Vec<_>, _>>()?;
+    }
+    Ok((pictures_back.into_iter().map(|texels| texels.into_iter().flatten().collect()).collect(), order))
 }
 
 #[test]
 fn compute_and_fragment_pass_draw_the_same_bits() {
     let fixture = fixture();
     let values = COUNT as usize * 4;
-    let by_compute = draw(&fixture, add_compute).unwrap();
-    let by_fragment = draw(&fixture, add_fragment).unwrap();
+    let by_compute = draw(&fixture, &[add_compute], None).unwrap().0.remove(0);
+    let by_fragment = draw(&fixture, &[add_fragment], None).unwrap().0.remove(0);
     assert_close("compute pass", &by_compute[..values], &reference(), 1e-6, 1e-6);
     assert_same_bits("fragment pass", &by_fragment, &by_compute);
     let untouched = &by_compute[values..];
@@ -165,4 +187,21 @@ fn compute_and_fragment_pass_draw_the_same_bits() {
         untouched.iter().all(|&value| value == -1.0),
         "pixels without a vertex stay clear: {untouched:?}"
     );
+}
+
+#[test]
+fn every_legal_order_draws_the_same_bits() {
+    let fixture = fixture();
+    let roads: [Road; 3] = [add_compute, add_fragment, add_compute];
+    let (expected, declared) = draw(&fixture, &roads, None).unwrap();
+    let mut orders = BTreeSet::from([declared]);
+    for seed in 0..8 {
+        let (pictures, order) = draw(&fixture, &roads, Some(seed)).unwrap();
+        for (road, (picture, expected)) in pictures.iter().zip(&expected).enumerate() {
+            assert_same_bits(&format!("road {road} in order {order:?}"), picture, expected);
+        }
+        orders.insert(order);
+    }
+    println!("{} orders of {} passes gave the same bits", orders.len(), 7);
+    assert!(orders.len() > 4, "the seeds shuffle too little: {orders:?}");
 }

@@ -63,7 +63,7 @@ fn with_graph(fixture: &Fixture, pass: &__Room__) -> Vec<f32> {
         *filled.lock().unwrap() = Some(recorder.read_back_buffer(resources.buffer(&exposed)?)?);
         Ok(())
     }));
-    let plan = graph.compile(&context.graph_limits()).unwrap();
+    let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
     let mut execution = Execution::prepare(context, plan).unwrap();
     let mut imports = Imports::new();
     imports.buffer(&colours, &source);

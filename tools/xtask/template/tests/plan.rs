@@ -19,7 +19,7 @@ fn plan(stops: f64, count: u32) -> Plan<()> {
     let exposed = declare(&mut graph, &Settings { stops }, colours, count, |_, _| ());
     let mut draw = graph.pass("draw", airglow_graph::PassKind::Graphics);
     draw.read(&exposed, Access::VertexStorageRead).side_effect().record(());
-    graph.compile(&Limits::default()).unwrap()
+    airglow_tests::plan::compile(graph, &Limits::default())
 }
 
 #[test]
