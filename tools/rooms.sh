@@ -27,15 +27,13 @@ fresh_copy() {
     cargo update --quiet --workspace --offline
 }
 
-# Built with the features of the whole workspace, as everything else is: its dependencies are built once.
-xtask() {
-    cargo build --locked --quiet --workspace --bin xtask
-    "$CARGO_TARGET_DIR/debug/xtask" "$@"
-}
+# Built in the tree, with the features of the whole workspace as tools/test.sh does; it works on the folder it runs in.
+cargo build --locked --quiet --workspace --bin xtask
+xtask=$CARGO_TARGET_DIR/debug/xtask
 
 say "a room made from the template: $name"
 fresh_copy
-xtask room "$name"
+"$xtask" room "$name"
 cargo fmt -p "airglow-$name" -p airglow -- --check
 cargo clippy --locked --quiet -p "airglow-$name" -p airglow --all-targets -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --locked --quiet -p "airglow-$name" -p airglow --lib --no-deps
@@ -45,7 +43,7 @@ for room in "$tree"/passes/*/Cargo.toml; do
     room=$(basename "$(dirname "$room")")
     say "without the room $room"
     fresh_copy
-    xtask room "$room" --remove
+    "$xtask" room "$room" --remove
     cargo check --locked --quiet --workspace --all-targets
 done
 
