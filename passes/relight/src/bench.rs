@@ -11,6 +11,7 @@ use crate::frame::{Environment, Frame, Instance, Light};
 use crate::mesh::MeshId;
 use crate::record::Bindings;
 use crate::relight::Relight;
+use crate::rotation::Orientation;
 use crate::settings::Output;
 use crate::stage::{Need, Resource};
 
@@ -56,10 +57,20 @@ pub struct Case<'a> {
     pub light: CaseLight<'a>,
     /// The mesh.
     pub mesh: MeshId,
-    /// Rotation of the instance.
-    pub rotation: DQuat,
+    /// Orientation of the instance.
+    pub orientation: Orientation,
     /// Dynamic visibility, vertex-major.
     pub visibility: Option<&'a [f32]>,
+    /// Normals of the vertices, of a mesh without vectors.
+    pub normals: Option<&'a [[f32; 3]]>,
+}
+
+impl<'a> Case<'a> {
+    /// A mesh in the orientation of its object space, without inputs of its own.
+    #[must_use]
+    pub fn new(light: CaseLight<'a>, mesh: MeshId) -> Self {
+        Self { light, mesh, orientation: Orientation::IDENTITY, visibility: None, normals: None }
+    }
 }
 
 const OWNER: &str = "bench";
@@ -125,7 +136,7 @@ impl Bench<'_> {
         wanted: Resource,
     ) -> Result<Vec<f32>, RelightError> {
         let mut bindings = Bindings::default();
-        let mut instance = Instance { rotation: case.rotation, ..Instance::new(case.mesh) };
+        let mut instance = Instance { orientation: case.orientation, ..Instance::new(case.mesh) };
         let light = match case.light {
             CaseLight::Environment(texels, rotation) => {
                 let view = self.image(&texels)?.full_view()?;
@@ -148,6 +159,10 @@ impl Bench<'_> {
         if let Some(values) = case.visibility {
             instance.visibility = Some(());
             bindings.buffers.insert(Resource::Visibility(0), (&self.buffer("visibility", values)?).into());
+        }
+        if let Some(values) = case.normals {
+            instance.normals = Some(());
+            bindings.buffers.insert(Resource::Normals(0), (&self.buffer("normals", values)?).into());
         }
         let frame = Frame { light, instances: vec![instance], target: None };
         let prepared = relight.prepare(self.context, &frame)?;
@@ -197,8 +212,7 @@ impl Bench<'_> {
         let mut relight = Relight::new(self.context, settings)?;
         let mesh = relight.add_mesh(self.context, "one vertex", 1, Some(&vec![0.0; order * order]))?;
         let light = CaseLight::Environment(*texels, DQuat::IDENTITY);
-        let case = Case { light, mesh, rotation: DQuat::IDENTITY, visibility: None };
-        let values = self.frame(&mut relight, &case, Resource::EnvironmentLight)?;
+        let values = self.frame(&mut relight, &Case::new(light, mesh), Resource::EnvironmentLight)?;
         Ok(values.chunks_exact(4).map(|rgbw| [rgbw[0], rgbw[1], rgbw[2]]).collect())
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DQuat;
 
 use crate::RelightError;
-use crate::rotation::object_space;
+use crate::rotation::{Orientation, Turn};
 
 /// A poisoned lock means a panic elsewhere while the data was whole: go on with it.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -15,29 +15,29 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// The rotations of a prepared frame. A plan that is recorded again reads what was set last.
 #[derive(Clone, Debug)]
 pub struct Rotations {
-    /// From the light to the object space of each instance, x, y, z, w, unit length.
-    quaternions: Arc<Mutex<Vec<[f32; 4]>>>,
+    /// From the light to the object space of each instance.
+    turns: Arc<Mutex<Vec<Turn>>>,
 }
 
 impl Rotations {
-    pub(crate) fn new(light: DQuat, instances: &[DQuat]) -> Result<Self, RelightError> {
-        Ok(Self { quaternions: Arc::new(Mutex::new(quaternions(light, instances)?)) })
+    pub(crate) fn new(light: DQuat, instances: &[Orientation]) -> Result<Self, RelightError> {
+        Ok(Self { turns: Arc::new(Mutex::new(turns(light, instances)?)) })
     }
 
-    /// One fixed rotation.
+    /// One fixed rotation by a unit quaternion.
     pub(crate) fn fixed(rotation: DQuat) -> Self {
-        Self { quaternions: Arc::new(Mutex::new(vec![rotation.as_quat().to_array()])) }
+        Self { turns: Arc::new(Mutex::new(vec![Turn::rotation(rotation)])) }
     }
 
     /// Sets the rotation of the light in the world and that of each instance, in the order of the frame, each of any
-    /// length but zero. It counts from the next recording on.
+    /// length but zero: quaternions, or [`Orientation`]s where instances may be mirrored. It counts from the next recording on.
     ///
     /// # Errors
     /// [`RelightError::Math`] for a zero or non-finite quaternion, [`RelightError::Length`] unless there are as many
     /// instances as in the frame; nothing is changed then.
-    pub fn set(&self, light: DQuat, instances: &[DQuat]) -> Result<(), RelightError> {
-        let turned = quaternions(light, instances)?;
-        let mut current = lock(&self.quaternions);
+    pub fn set(&self, light: DQuat, instances: &[impl Into<Orientation> + Copy]) -> Result<(), RelightError> {
+        let turned = turns(light, instances)?;
+        let mut current = lock(&self.turns);
         if turned.len() != current.len() {
             let (expected, actual) = (current.len(), turned.len());
             let name = "the frame".to_owned();
@@ -47,13 +47,13 @@ impl Rotations {
         Ok(())
     }
 
-    pub(crate) fn get(&self) -> MutexGuard<'_, Vec<[f32; 4]>> {
-        lock(&self.quaternions)
+    pub(crate) fn get(&self) -> MutexGuard<'_, Vec<Turn>> {
+        lock(&self.turns)
     }
 }
 
-fn quaternions(light: DQuat, instances: &[DQuat]) -> Result<Vec<[f32; 4]>, RelightError> {
-    instances.iter().map(|instance| Ok(object_space(light, *instance)?.as_quat().to_array())).collect()
+fn turns(light: DQuat, instances: &[impl Into<Orientation> + Copy]) -> Result<Vec<Turn>, RelightError> {
+    instances.iter().map(|instance| Turn::to_object_space(light, (*instance).into())).collect()
 }
 
 /// Which revision of the environment was projected last.

@@ -80,6 +80,7 @@ fn host_handle(frame: &GraphFrame, resource: Resource) -> Option<Named> {
         (Resource::UniformLight, Light::Uniform { coefficients, .. }) => Some(Named::Buffer(*coefficients)),
         (Resource::VertexLight(index), _) => instance(index)?.light.map(Named::Buffer),
         (Resource::Visibility(index), _) => instance(index)?.visibility.map(Named::Buffer),
+        (Resource::Normals(index), _) => instance(index)?.normals.map(Named::Buffer),
         (Resource::Results, _) => frame.target.map(Named::Buffer),
         _ => None,
     }

@@ -13,7 +13,7 @@ use crate::RelightError;
 use crate::bench::{Bench, Texels};
 use crate::kernels;
 use crate::relight::compute;
-use crate::rotation::normalised;
+use crate::rotation::{Turn, normalised};
 use crate::settings::MAX_ORDER;
 use crate::stage::Pair;
 use crate::tables::tensor;
@@ -88,9 +88,9 @@ pub fn sh_rotate(bench: &Bench<'_>, rows: &[RotateRow]) -> Result<Rows<Evaluated
             let vectors: Vec<[f32; 4]> = (places.iter())
                 .flat_map(|&i| rows[i].f.iter().map(|value| [*value as f32, 0.0, 0.0, 0.0]))
                 .collect();
-            let turns = places.iter().map(|&i| Ok(normalised(rows[i].rotation)?.as_quat().to_array()));
-            let turns: Vec<[f32; 4]> = turns.collect::<Result<_, RelightError>>()?;
-            let [source, turns] = [bench.buffer("vectors", &vectors)?, bench.buffer("quaternions", &turns)?];
+            let turns = places.iter().map(|&i| Ok(Turn::rotation(normalised(rows[i].rotation)?)));
+            let turns: Vec<Turn> = turns.collect::<Result<_, RelightError>>()?;
+            let [source, turns] = [bench.buffer("vectors", &vectors)?, bench.buffer("turns", &turns)?];
             let rotated = bench.scratch("rotated", BufferDesc::new(source.size()))?;
             let bound =
                 [Binding::storage(0, &source), Binding::storage(1, &turns), Binding::storage(2, &rotated)];

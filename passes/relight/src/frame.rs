@@ -8,6 +8,7 @@ use glam::DQuat;
 
 use crate::control::Rotations;
 use crate::mesh::MeshId;
+use crate::rotation::Orientation;
 
 /// An equirectangular environment: linear Rec. 709 radiance, W/sr/m2, constant on each texel, the centre looking
 /// down -Z, u growing towards +X, v down.
@@ -49,21 +50,25 @@ pub enum Light<B, I> {
 pub struct Instance<B> {
     /// The mesh.
     pub mesh: MeshId,
-    /// Its rotation from object space to the world; any length but zero, see
-    /// [`instance_rotation`](crate::instance_rotation).
-    pub rotation: DQuat,
+    /// From object space to the world, see [`instance_rotation`](crate::instance_rotation).
+    pub orientation: Orientation,
     /// With [`Light::Vertices`]: SH RGB of each vertex in object space, `[[f32; 3]; order^2]` a vertex.
     pub light: Option<B>,
     /// Dynamic visibility of each vertex in object space, `[f32; order^2]` a vertex: the SH projection of a function
     /// that is 1 where the vertex sees the light and 0 where something moving blocks it.
     pub visibility: Option<B>,
+    /// The current normal of each vertex in object space, of a mesh without vectors: `[f32; 3]` a vertex, of any
+    /// length, tightly packed, as glTF and the vertex format `R32G32B32_SFLOAT` have them, so that the output of a
+    /// skinning pass serves as a vertex buffer and as this. The vertex gets the transfer of an unshadowed surface; one
+    /// with a zero normal stays black. For [`Settings::normals`](crate::Settings::normals).
+    pub normals: Option<B>,
 }
 
 impl<B> Instance<B> {
-    /// An instance without rotation and without inputs of its own.
+    /// An instance in the orientation of its object space and without inputs of its own.
     #[must_use]
     pub fn new(mesh: MeshId) -> Self {
-        Self { mesh, rotation: DQuat::IDENTITY, light: None, visibility: None }
+        Self { mesh, orientation: Orientation::IDENTITY, light: None, visibility: None, normals: None }
     }
 }
 

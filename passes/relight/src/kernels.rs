@@ -9,7 +9,7 @@ use airglow_graph::Access;
 
 use modules::{
     ByOrder, COLOUR, ENVIRONMENT_BANDS, ENVIRONMENT_ROWS, INCIDENT_BAKED, INCIDENT_BOTH, INCIDENT_DYNAMIC,
-    PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX, ROTATE,
+    INCIDENT_OPEN, PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX, ROTATE,
 };
 
 use crate::settings::{LightKind, Output, Settings, Storage};
@@ -61,7 +61,7 @@ pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
 }
 
 /// Which vectors of a vertex a kernel reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Source {
     /// Only the baked ones.
     Baked,
@@ -69,6 +69,38 @@ pub(crate) enum Source {
     Dynamic,
     /// Both.
     Both,
+    /// Transfer of the current normals.
+    Normals,
+    /// Transfer of the current normals, and the dynamic visibility.
+    ShadowedNormals,
+    /// None: nothing blocks the incident radiance.
+    Open,
+}
+
+impl Source {
+    /// Those that instances may have under these settings.
+    pub(crate) fn all(settings: &Settings) -> Vec<Self> {
+        let (colour, shadows) = (settings.output == Output::Colour, settings.visibility);
+        let possible = [
+            (Self::Baked, true),
+            (Self::Both, shadows),
+            (Self::Dynamic, !colour && shadows),
+            (Self::Open, !colour),
+            (Self::Normals, settings.normals),
+            (Self::ShadowedNormals, settings.normals && shadows),
+        ];
+        possible.into_iter().filter_map(|(source, possible)| possible.then_some(source)).collect()
+    }
+
+    /// Whether transfer is made from normals.
+    pub(crate) fn has_normals(self) -> bool {
+        matches!(self, Self::Normals | Self::ShadowedNormals)
+    }
+
+    /// Whether there is dynamic visibility.
+    pub(crate) fn is_shadowed(self) -> bool {
+        matches!(self, Self::Dynamic | Self::Both | Self::ShadowedNormals)
+    }
 }
 
 const fn storage(binding: u32, access: Access) -> Binding {
@@ -181,8 +213,12 @@ pub(crate) fn rectangle(settings: &Settings, source: Source) -> Kernel {
         name: "relight rectangle",
         spirv: colour_modules(&RECTANGLE, settings, source)[settings.order - 1],
         bindings: match (source, settings.light) {
-            (Source::Baked, LightKind::Uniform) => const { &[fragment_read(0), fragment_uniform(1)] },
-            (Source::Baked, LightKind::Vertex) => const { &[fragment_read(0), fragment_read(1)] },
+            (Source::Baked | Source::Normals, LightKind::Uniform) => {
+                const { &[fragment_read(0), fragment_uniform(1)] }
+            }
+            (Source::Baked | Source::Normals, LightKind::Vertex) => {
+                const { &[fragment_read(0), fragment_read(1)] }
+            }
             (_, LightKind::Uniform) => const { &[fragment_read(0), fragment_read(3), fragment_uniform(4)] },
             (_, LightKind::Vertex) => {
                 const { &[fragment_read(0), fragment_read(1), fragment_read(3), fragment_read(4)] }
@@ -202,38 +238,49 @@ fn storage_index(settings: &Settings) -> usize {
     usize::from(settings.storage == Storage::F16)
 }
 
+/// Where the kernel has its transfer from: f32, f16 or normals.
+fn transfer_index(settings: &Settings, source: Source) -> usize {
+    if source.has_normals() { 2 } else { storage_index(settings) }
+}
+
 fn light_index(settings: &Settings) -> usize {
     usize::from(settings.light == LightKind::Vertex)
 }
 
 fn colour_modules(
-    family: &'static [[[ByOrder; 2]; 2]; 2],
+    family: &'static [[[ByOrder; 3]; 2]; 2],
     settings: &Settings,
     source: Source,
 ) -> &'static ByOrder {
-    &family[usize::from(source != Source::Baked)][light_index(settings)][storage_index(settings)]
+    &family[usize::from(source.is_shadowed())][light_index(settings)][transfer_index(settings, source)]
 }
 
 fn incident_modules(settings: &Settings, source: Source) -> &'static ByOrder {
     let light = light_index(settings);
     match source {
-        Source::Baked => &INCIDENT_BAKED[light][storage_index(settings)],
         Source::Dynamic => &INCIDENT_DYNAMIC[light],
         Source::Both => &INCIDENT_BOTH[light][storage_index(settings)],
+        Source::Open => &INCIDENT_OPEN[light],
+        // No settings allow normals here.
+        Source::Baked | Source::Normals | Source::ShadowedNormals => {
+            &INCIDENT_BAKED[light][storage_index(settings)]
+        }
     }
 }
 
-/// Transfer 0, light 1, result 2, visibility 3, product matrix 4, tensor 4 (colour) or 5 (incident).
+/// Transfer or normals 0, light 1, result 2, visibility 3, product matrix 4, tensor 4 (colour) or 5 (incident).
 fn vertex_bindings(settings: &Settings, source: Source) -> &'static [Binding] {
     match (settings.output, source, settings.light) {
-        (Output::Colour, Source::Baked, LightKind::Uniform) => const { &[read(0), uniform(1), write(2)] },
-        (Output::Colour, Source::Baked, LightKind::Vertex) => const { &[read(0), read(1), write(2)] },
+        (_, Source::Open, LightKind::Uniform) => const { &[uniform(1), write(2)] },
+        (_, Source::Open, LightKind::Vertex) => const { &[read(1), write(2)] },
+        (Output::Colour, Source::Baked | Source::Normals, LightKind::Uniform) => {
+            const { &[read(0), uniform(1), write(2)] }
+        }
+        (Output::Colour, Source::Baked | Source::Normals, LightKind::Vertex) => {
+            const { &[read(0), read(1), write(2)] }
+        }
         (Output::Colour, _, LightKind::Uniform) => const { &[read(0), write(2), read(3), uniform(4)] },
         (Output::Colour, _, LightKind::Vertex) => const { &[read(0), read(1), write(2), read(3), read(4)] },
-        (Output::Incident, Source::Baked, LightKind::Uniform) => const { &[read(0), write(2), uniform(4)] },
-        (Output::Incident, Source::Baked, LightKind::Vertex) => {
-            const { &[read(0), read(1), write(2), read(5)] }
-        }
         (Output::Incident, Source::Dynamic, LightKind::Uniform) => const { &[write(2), read(3), uniform(4)] },
         (Output::Incident, Source::Dynamic, LightKind::Vertex) => {
             const { &[read(1), write(2), read(3), read(5)] }
@@ -244,6 +291,8 @@ fn vertex_bindings(settings: &Settings, source: Source) -> &'static [Binding] {
         (Output::Incident, Source::Both, LightKind::Vertex) => {
             const { &[read(0), read(1), write(2), read(3), read(5)] }
         }
+        (Output::Incident, _, LightKind::Uniform) => const { &[read(0), write(2), uniform(4)] },
+        (Output::Incident, _, LightKind::Vertex) => const { &[read(0), read(1), write(2), read(5)] },
     }
 }
 
@@ -263,8 +312,16 @@ pub fn all() -> Vec<Kernel> {
                     kernels.push(rectangle(&settings, source));
                     kernels.push(vertices(&incident, source));
                 }
-                kernels.push(vertices(&incident, Source::Dynamic));
             }
+        }
+        for light in [LightKind::Uniform, LightKind::Vertex] {
+            let settings = Settings { order, light, ..Settings::default() };
+            let incident = Settings { output: Output::Incident, ..settings };
+            for source in [Source::Normals, Source::ShadowedNormals] {
+                kernels.push(vertices(&settings, source));
+                kernels.push(rectangle(&settings, source));
+            }
+            kernels.extend([Source::Dynamic, Source::Open].map(|source| vertices(&incident, source)));
         }
     }
     kernels

@@ -8,7 +8,8 @@
 //! B_p = <t_p, l, v> = v^T M_l t_p    with a dynamic visibility vector v
 //! L_p = M_l v                        the incident radiance itself, for shaders that need direction
 //! ```
-//! where M_l is the SH product matrix of the light (Sun 2008, eqs. 5.8-5.10). The light is projected exactly from
+//! A mesh without a bake, or with a skin, has the transfer of an unshadowed surface about its current normal instead.
+//! M_l is the SH product matrix of the light (Sun 2008, eqs. 5.8-5.10). The light is projected exactly from
 //! an equirectangular environment, each texel constant, and rotated on the GPU.
 //!
 //! ```no_run
@@ -66,7 +67,7 @@ pub use frame::{Environment, Frame, Instance, Light, Relit, ResultRange};
 pub use mesh::MeshId;
 pub use record::Bindings;
 pub use relight::Relight;
-pub use rotation::{instance_rotation, object_space};
+pub use rotation::{Orientation, instance_rotation, object_space};
 pub use settings::{LightKind, MAX_ORDER, Method, Output, Settings, Storage};
 pub use stage::{Need, Prepared, Resource, Stage, Use};
 pub use tables::check_environment;

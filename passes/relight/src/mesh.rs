@@ -19,7 +19,7 @@ pub struct MeshId {
 pub(crate) struct Mesh {
     pub vertices: u32,
     pub chunks: Vec<Chunk>,
-    /// The packed chunks one after another; none for a mesh that has only dynamic visibility.
+    /// The packed chunks one after another; none for a mesh without a bake.
     pub vectors: Option<Resident>,
 }
 
@@ -46,6 +46,11 @@ impl Mesh {
             None => None,
         };
         Ok(Self { vertices, chunks, vectors })
+    }
+
+    /// Whether vectors were baked for it.
+    pub(crate) fn has_vectors(&self) -> bool {
+        self.vectors.is_some()
     }
 
     /// Byte offset of a chunk's packed vectors and their size.

@@ -3,15 +3,15 @@
 use airglow_gpu::ash::vk::{AccessFlags2, PipelineStageFlags2};
 use airglow_gpu::{Buffer, Context};
 use airglow_graph::{Access, ImageDesc, PassKind, ResourceDesc, State};
-use glam::DQuat;
 
 use crate::RelightError;
 use crate::builder::Builder;
 use crate::control::{Once, Rotations};
-use crate::frame::{Environment, Frame, Light, ResultRange};
+use crate::frame::{Environment, Frame, Instance, Light, ResultRange};
 use crate::mesh::Mesh;
 use crate::pack::RECTANGLE_WIDTH;
 use crate::relight::{LightPipelines, RECTANGLE_FORMAT, Relight, alignment};
+use crate::rotation::Orientation;
 use crate::settings::{LightKind, Method, Output};
 use crate::stage::{Need, Pair, Prepared, Resource, Work};
 use crate::tables::map_frame;
@@ -114,7 +114,8 @@ impl Relight {
             }
         };
         let Some(pipelines) = &self.light_pipelines else { return Ok(None) };
-        let instances: Vec<DQuat> = frame.instances.iter().map(|instance| instance.rotation).collect();
+        let instances: Vec<Orientation> =
+            frame.instances.iter().map(|instance| instance.orientation).collect();
         let rotations = Rotations::new(turn, &instances)?;
         let (count, stride) = (instances.len() as u32, self.light_stride());
         builder.scratch(Resource::Lights, u64::from(count) * stride);
@@ -132,7 +133,7 @@ impl Relight {
         Ok(Some(rotations))
     }
 
-    /// The product matrices, if some instance has visibility or wants incident radiance.
+    /// The product matrices, if some instance has visibility, dynamic or baked.
     fn matrices<B, I>(
         &self,
         builder: &mut Builder,
@@ -142,9 +143,12 @@ impl Relight {
     ) {
         let stride = self.matrix_stride();
         let bytes = u64::from(instances) * stride;
-        let shadowed = frame.instances.iter().any(|instance| instance.visibility.is_some());
-        if self.settings.output == Output::Colour && !shadowed {
-            let why = "no instance has dynamic visibility";
+        let incident = self.settings.output == Output::Incident;
+        let baked = |instance: &Instance<B>| self.meshes.get(instance.mesh).is_ok_and(Mesh::has_vectors);
+        let shadowed = |instance: &Instance<B>| instance.visibility.is_some() || incident && baked(instance);
+        if !frame.instances.iter().any(shadowed) {
+            let why =
+                if incident { "no instance has visibility" } else { "no instance has dynamic visibility" };
             builder.leave_out("relight product matrices", why, bytes, "a visibility vector for each vertex");
             return;
         }

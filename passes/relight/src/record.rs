@@ -143,8 +143,8 @@ impl Stage {
                 recorder.dispatch([*coefficients, 1, 1])
             }
             Work::Rotate { pipeline, source, target, rotations, strides } => {
-                let quaternions = rotations.get().clone();
-                let turns = recorder.upload(&quaternions)?;
+                let values = rotations.get().clone();
+                let turns = recorder.upload(&values)?;
                 let bound = [
                     Binding::storage(0, bindings.buffer(*source)?),
                     Binding::storage(1, &turns),
@@ -152,7 +152,7 @@ impl Stage {
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
                 recorder.push_constants(strides)?;
-                recorder.dispatch([quaternions.len() as u32, 1, 1])
+                recorder.dispatch([values.len() as u32, 1, 1])
             }
             Work::Matrices { pipeline, elements, instances, strides } => {
                 let bound = [

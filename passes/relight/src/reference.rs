@@ -6,14 +6,17 @@
 
 use airglow_math::sh::product::TripleProduct;
 use airglow_math::sh::rotation::Rotation;
-use glam::DQuat;
+use airglow_math::sh::zonal;
+use glam::{DQuat, DVec3};
 
 use crate::RelightError;
+use crate::rotation::{Orientation, object_space};
 
 /// SH RGB of one light or one vertex: order^2 coefficients.
 pub type Sh = Vec<[f64; 3]>;
 
-/// The light in the frame of an instance: the environment's vector turned by `instance^-1 environment`.
+/// The light in the frame of an instance: the environment's vector turned by `instance^-1 environment`, then inverted
+/// where the instance is: `Y_lm(-s) = (-1)^l Y_lm(s)`.
 ///
 /// # Errors
 /// [`RelightError::Math`] for a zero or non-finite quaternion or a wrong length.
@@ -21,10 +24,32 @@ pub fn light(
     order: usize,
     environment: &[[f64; 3]],
     turn: DQuat,
-    instance: DQuat,
+    instance: impl Into<Orientation>,
 ) -> Result<Sh, RelightError> {
-    Ok(Rotation::from_quaternion(order, crate::rotation::object_space(turn, instance)?)?
-        .apply_rgb(environment)?)
+    let instance = instance.into();
+    let rotation = Rotation::from_quaternion(order, object_space(turn, instance.rotation)?)?;
+    let mut light = rotation.apply_rgb(environment)?;
+    for l in 0..order {
+        let sign = instance.band_sign(l);
+        light[l * l..(l + 1) * (l + 1)].as_flattened_mut().iter_mut().for_each(|value| *value *= sign);
+    }
+    Ok(light)
+}
+
+/// The transfer vector of a vertex that nothing shadows: the clamped cosine about its normal over pi (Sun 2008,
+/// eqs. 2.21-2.25 and 5.14); zero for a zero normal.
+///
+/// # Errors
+/// [`RelightError::Math`] for an order out of range.
+pub fn unshadowed(order: usize, normal: DVec3) -> Result<Vec<f64>, RelightError> {
+    let mut transfer = vec![0.0; order * order];
+    let largest = normal.abs().max_element();
+    if largest > 0.0 {
+        let factors: Vec<f64> =
+            zonal::clamped_cosine(order)?.into_iter().map(|factor| factor / std::f64::consts::PI).collect();
+        zonal::rotate_to_direction(&factors, (normal / largest).normalize(), &mut transfer)?;
+    }
+    Ok(transfer)
 }
 
 /// The colour of a vertex without dynamic visibility: t_p . l for each channel (Sun 2008, section 2.5).
@@ -69,6 +94,7 @@ pub fn incident(
     match (baked, dynamic) {
         (Some(a), Some(b)) => tensor.product(a, b, &mut seen)?,
         (Some(one), None) | (None, Some(one)) => seen.copy_from_slice(one),
+        // Nothing blocks: visibility is 1.
         (None, None) => return Ok(light.to_vec()),
     }
     let mut result = vec![[0.0; 3]; light.len()];

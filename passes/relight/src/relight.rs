@@ -1,5 +1,7 @@
 //! The pass: its kernels, tables and meshes, kept from frame to frame.
 
+use std::collections::BTreeMap;
+
 use airglow_gpu::ash::vk;
 use airglow_gpu::requirements::{FormatNeed, Limit, LimitNeed};
 use airglow_gpu::{
@@ -35,13 +37,6 @@ pub(crate) struct LightPipelines {
     pub matrix: Option<ComputePipeline>,
 }
 
-/// The kernels over vertices that the settings can need.
-pub(crate) struct VertexPipelines {
-    pub baked: VertexPipeline,
-    pub both: Option<VertexPipeline>,
-    pub dynamic: Option<VertexPipeline>,
-}
-
 /// Tables for environments of one size, and what was projected with them.
 pub(crate) struct Map {
     pub width: u32,
@@ -58,7 +53,8 @@ pub struct Relight {
     pub(crate) settings: Settings,
     pub(crate) chunk_vertices: u32,
     pub(crate) meshes: Meshes,
-    pub(crate) vertex_pipelines: VertexPipelines,
+    /// Those that the settings can need.
+    pub(crate) vertex_pipelines: BTreeMap<Source, VertexPipeline>,
     /// With uniform light only.
     pub(crate) light_pipelines: Option<LightPipelines>,
     /// With uniform light only: the environment's coefficients.
@@ -149,9 +145,11 @@ impl Relight {
     }
 
     /// Adds a mesh of `vertices` vertices, in the host's order. `vectors` are vertex-major, order^2 values a vertex:
-    /// transfer vectors for colours (1/pi in them, no albedo), static visibility vectors for incident radiance; only
-    /// a mesh whose incident radiance has dynamic visibility can do without. The copy to the device becomes part of
-    /// the next frame that uses the mesh.
+    /// transfer vectors for colours (1/pi in them, no albedo), static visibility vectors for incident radiance. The
+    /// copy to the device becomes part of the next frame that uses the mesh.
+    ///
+    /// A mesh without vectors is one that nothing static shadows: its instances bring their normals for colours, and
+    /// its incident radiance is the light, with the dynamic visibility where there is one.
     ///
     /// # Errors
     /// [`RelightError::Length`], [`RelightError::Values`] with a count for values that are not finite or do not fit
@@ -163,10 +161,10 @@ impl Relight {
         vertices: u32,
         vectors: Option<&[f32]>,
     ) -> Result<MeshId, RelightError> {
-        if vectors.is_none() && (self.settings.output == Output::Colour || !self.settings.visibility) {
+        if vectors.is_none() && self.settings.output == Output::Colour && !self.settings.normals {
             return Err(RelightError::Settings {
                 what: "a mesh without vectors has nothing to be lit by",
-                mend: "give its vectors, or use Output::Incident with dynamic visibility",
+                mend: "give its vectors, or set Settings::normals and give Instance::normals",
             });
         }
         let mesh = Mesh::new(context, &self.settings, self.chunk_vertices, name, vertices, vectors)?;
@@ -257,19 +255,20 @@ fn light_pipelines(context: &Context, settings: &Settings) -> Result<LightPipeli
     })
 }
 
-fn vertex_pipelines(context: &Context, settings: &Settings) -> Result<VertexPipelines, GpuError> {
-    let pipeline = |source| match settings.method {
-        Method::Compute => {
-            Ok(VertexPipeline::Compute(compute(context, &kernels::vertices(settings, source))?))
-        }
-        Method::Fragment => Ok(VertexPipeline::Rectangle(rectangle(context, settings, source)?)),
+fn vertex_pipelines(
+    context: &Context,
+    settings: &Settings,
+) -> Result<BTreeMap<Source, VertexPipeline>, GpuError> {
+    let pipeline = |source| {
+        let pipeline = match settings.method {
+            Method::Compute => {
+                VertexPipeline::Compute(compute(context, &kernels::vertices(settings, source))?)
+            }
+            Method::Fragment => VertexPipeline::Rectangle(rectangle(context, settings, source)?),
+        };
+        Ok((source, pipeline))
     };
-    let dynamic = settings.visibility && settings.output == Output::Incident;
-    Ok(VertexPipelines {
-        baked: pipeline(Source::Baked)?,
-        both: settings.visibility.then(|| pipeline(Source::Both)).transpose()?,
-        dynamic: dynamic.then(|| pipeline(Source::Dynamic)).transpose()?,
-    })
+    Source::all(settings).into_iter().map(pipeline).collect()
 }
 
 fn rectangle(context: &Context, settings: &Settings, source: Source) -> Result<GraphicsPipeline, GpuError> {

@@ -8,6 +8,58 @@ use crate::RelightError;
 /// How far a matrix may be from a scaled rotation, relative to its scale.
 const TOLERANCE: f64 = 1e-4;
 
+/// How an instance lies in the world, scale and place apart: `d -> q d q^-1`, with an inversion `d -> -q d q^-1`.
+///
+/// Every mirroring is a rotation followed by the inversion, so instances that are mirrored share the transfer that was
+/// baked in object space with those that are not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// The rotation from object space to the world, of any length but zero.
+    pub rotation: DQuat,
+    /// Whether the inversion follows.
+    pub inverted: bool,
+}
+
+impl Orientation {
+    /// Object space is world space.
+    pub const IDENTITY: Self = Self { rotation: DQuat::IDENTITY, inverted: false };
+
+    /// The sign of band `l` under the inversion: `Y_lm(-s) = (-1)^l Y_lm(s)`.
+    #[must_use]
+    pub fn band_sign(&self, l: usize) -> f64 {
+        if self.inverted && l % 2 == 1 { -1.0 } else { 1.0 }
+    }
+}
+
+impl From<DQuat> for Orientation {
+    fn from(rotation: DQuat) -> Self {
+        Self { rotation, inverted: false }
+    }
+}
+
+/// A turn of light as `rotate.comp` takes it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Turn {
+    /// x, y, z, w, unit length.
+    pub quaternion: [f32; 4],
+    pub odd_sign: f32,
+    padding: [f32; 3],
+}
+
+impl Turn {
+    /// From the light to the object space of an instance.
+    pub(crate) fn to_object_space(light: DQuat, instance: Orientation) -> Result<Self, RelightError> {
+        let rotation = object_space(light, instance.rotation)?;
+        Ok(Self { odd_sign: instance.band_sign(1) as f32, ..Self::rotation(rotation) })
+    }
+
+    /// By a unit quaternion.
+    pub(crate) fn rotation(unit: DQuat) -> Self {
+        Self { quaternion: unit.as_quat().to_array(), odd_sign: 1.0, padding: [0.0; 3] }
+    }
+}
+
 /// The quaternion of length one in the same direction.
 ///
 /// # Errors
@@ -30,15 +82,16 @@ pub fn object_space(environment: DQuat, instance: DQuat) -> Result<DQuat, Religh
     Ok((normalised(instance)?.inverse() * normalised(environment)?).normalize())
 }
 
-/// The rotation in the upper left of an instance's matrix (columns are the images of the axes).
+/// The rotation in the upper left of an instance's matrix (columns are the images of the axes), and whether the matrix
+/// mirrors.
 ///
-/// Transfer baked in object space holds for every rotation, translation and uniform scale of the object, and for
-/// nothing else.
+/// Transfer baked in object space holds for every rotation, mirroring, translation and uniform scale of the object,
+/// and for nothing else.
 ///
 /// # Errors
-/// [`RelightError::Matrix`] for a mirrored, sheared or unevenly scaled matrix, and for one that is not finite or
-/// flattens the object.
-pub fn instance_rotation(matrix: DMat3) -> Result<DQuat, RelightError> {
+/// [`RelightError::Matrix`] for a sheared or unevenly scaled matrix, and for one that is not finite or flattens the
+/// object.
+pub fn instance_rotation(matrix: DMat3) -> Result<Orientation, RelightError> {
     let refuse = |problem| Err(RelightError::Matrix { problem });
     let determinant = matrix.determinant();
     if !matrix.is_finite() || !determinant.is_finite() {
@@ -53,10 +106,7 @@ pub fn instance_rotation(matrix: DMat3) -> Result<DQuat, RelightError> {
     if deviation.iter().any(|value| value.abs() > TOLERANCE) {
         return refuse("shears the object or scales it unevenly");
     }
-    if determinant < 0.0 {
-        return refuse("mirrors the object");
-    }
-    Ok(DQuat::from_mat3(&unit).normalize())
+    Ok(Orientation { rotation: DQuat::from_mat3(&unit).normalize(), inverted: determinant < 0.0 })
 }
 
 #[cfg(test)]
@@ -68,17 +118,35 @@ mod tests {
     fn a_scaled_rotation_is_recovered() {
         let q = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 2.1);
         let found = instance_rotation(DMat3::from_quat(q) * 3.5).unwrap();
-        assert!(found.dot(q).abs() > 1.0 - 1e-14, "{found} and {q}");
+        assert!(found.rotation.dot(q).abs() > 1.0 - 1e-14, "{found:?} and {q}");
+        assert!(!found.inverted);
+    }
+
+    #[test]
+    fn a_mirroring_is_a_rotation_and_the_inversion() {
+        let turn = DMat3::from_axis_angle(DVec3::new(-0.3, 0.4, 1.0).normalize(), 0.8);
+        for axis in [DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, 1.0, -1.0), DVec3::NEG_ONE] {
+            let matrix = turn * DMat3::from_diagonal(axis) * 0.25;
+            let found = instance_rotation(matrix).unwrap();
+            assert!(found.inverted);
+            for d in [DVec3::X, DVec3::Y, DVec3::new(0.6, 0.0, 0.8)] {
+                let (ours, truth) = (-(found.rotation * d), matrix * d / 0.25);
+                assert!(ours.distance(truth) < 1e-14, "{ours} and {truth}");
+            }
+        }
     }
 
     #[test]
     fn what_transfer_cannot_follow_is_refused() {
-        let mirror = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
+        let sheared = DMat3::from_cols(DVec3::X, DVec3::new(0.5, 1.0, 0.0), DVec3::Z);
         let uneven = DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0));
         let flat = DMat3::from_diagonal(DVec3::new(1.0, 0.0, 1.0));
-        for (matrix, word) in [(mirror, "mirrors"), (uneven, "unevenly"), (flat, "flattens")] {
+        for (matrix, word) in [(sheared, "shears"), (uneven, "unevenly"), (flat, "flattens")] {
             let message = instance_rotation(matrix).unwrap_err().to_string();
-            assert!(message.contains(word), "{message}");
+            assert!(
+                message.contains(word) && message.contains("bake its transfer in world space"),
+                "{message}"
+            );
         }
         assert!(instance_rotation(DMat3::from_diagonal(DVec3::new(f64::NAN, 1.0, 1.0))).is_err());
     }

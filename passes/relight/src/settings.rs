@@ -64,6 +64,9 @@ pub struct Settings {
     /// Whether instances may bring a dynamic visibility vector for each vertex. Default no: then neither the
     /// product matrix nor its kernels exist.
     pub visibility: bool,
+    /// Whether instances of meshes without vectors may bring the normals of their vertices, for colours. Default no:
+    /// then their kernels do not exist.
+    pub normals: bool,
 }
 
 impl Default for Settings {
@@ -75,6 +78,7 @@ impl Default for Settings {
             method: Method::default(),
             light: LightKind::default(),
             visibility: false,
+            normals: false,
         }
     }
 }
@@ -113,6 +117,12 @@ impl Settings {
             return Err(RelightError::Settings {
                 what: "a pixel cannot hold the incident radiance of a vertex",
                 mend: "choose Method::Compute for Output::Incident",
+            });
+        }
+        if self.normals && self.output == Output::Incident {
+            return Err(RelightError::Settings {
+                what: "the radiance that meets a vertex does not depend on its normal",
+                mend: "leave Settings::normals off for Output::Incident",
             });
         }
         Ok(())

@@ -38,6 +38,8 @@ pub enum Resource {
     VertexLight(u32),
     /// The dynamic visibility of each vertex of an instance, by its index in the frame.
     Visibility(u32),
+    /// The normals of an instance's vertices, by its index in the frame.
+    Normals(u32),
     /// The packed rectangle of the fragment method.
     Rectangle,
     /// The results of all instances.
@@ -60,6 +62,7 @@ impl fmt::Display for Resource {
             Self::Vectors(mesh) => write!(f, "relight vectors of mesh {mesh}"),
             Self::VertexLight(instance) => write!(f, "relight vertex light of instance {instance}"),
             Self::Visibility(instance) => write!(f, "relight visibility of instance {instance}"),
+            Self::Normals(instance) => write!(f, "relight normals of instance {instance}"),
             Self::Rectangle => f.write_str("relight rectangle"),
             Self::Results => f.write_str("relight results"),
         }

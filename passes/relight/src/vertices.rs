@@ -30,13 +30,16 @@ impl Relight {
             let source = self.source(index, instance, mesh)?;
             let (kernel, pipeline) = self.kernel(source)?;
             for binding in kernel.bindings {
-                let resource =
-                    self.resource(binding.binding, binding.kind, index as u32, instance.mesh.index);
+                let resource = resource(binding, source, index as u32, instance.mesh.index);
                 uses.insert(resource, binding.access);
                 self.need(builder, resource, mesh, binding.access);
             }
             for chunk in &mesh.chunks {
-                let bound = self.bind(&kernel, mesh, chunk, index as u32, instance.mesh.index, range);
+                let bind = |binding| {
+                    let resource = resource(binding, source, index as u32, instance.mesh.index);
+                    self.bind(binding, resource, index as u32, mesh, chunk, range)
+                };
+                let bound = kernel.bindings.iter().map(bind).collect();
                 let first_row =
                     (range.offset / 16 / u64::from(RECTANGLE_WIDTH)) as u32 + chunk.first / RECTANGLE_WIDTH;
                 let constants =
@@ -90,46 +93,36 @@ impl Relight {
         if self.settings.light == LightKind::Uniform && instance.light.is_some() {
             return refuse("it has light for its vertices", "set Settings::light to LightKind::Vertex");
         }
-        match (instance.visibility.is_some(), mesh.vectors.is_some()) {
-            (true, _) if !self.settings.visibility => {
-                refuse("it has dynamic visibility", "set Settings::visibility")
-            }
-            (true, true) => Ok(Source::Both),
-            (true, false) => Ok(Source::Dynamic),
-            (false, true) => Ok(Source::Baked),
-            (false, false) => refuse("its mesh has no vectors and it has no visibility", "give one of them"),
+        if instance.visibility.is_some() && !self.settings.visibility {
+            return refuse("it has dynamic visibility", "set Settings::visibility");
+        }
+        if instance.normals.is_some() && !self.settings.normals {
+            return refuse("it has normals", "set Settings::normals");
+        }
+        let colour = self.settings.output == Output::Colour;
+        match (mesh.has_vectors(), instance.normals.is_some(), instance.visibility.is_some()) {
+            (true, true, _) => refuse("it has normals and its mesh has vectors", "give one of them"),
+            (true, false, false) => Ok(Source::Baked),
+            (true, false, true) => Ok(Source::Both),
+            (false, true, false) => Ok(Source::Normals),
+            (false, true, true) => Ok(Source::ShadowedNormals),
+            (false, false, _) if colour => refuse("its mesh has no vectors", "give Instance::normals"),
+            (false, false, false) => Ok(Source::Open),
+            (false, false, true) => Ok(Source::Dynamic),
         }
     }
 
     fn kernel(&self, source: Source) -> Result<(Kernel, &VertexPipeline), RelightError> {
-        let pipelines = &self.vertex_pipelines;
-        let pipeline = match source {
-            Source::Baked => Some(&pipelines.baked),
-            Source::Dynamic => pipelines.dynamic.as_ref(),
-            Source::Both => pipelines.both.as_ref(),
-        };
         let kernel = match self.settings.method {
             Method::Compute => kernels::vertices(&self.settings, source),
             Method::Fragment => kernels::rectangle(&self.settings, source),
         };
         // `source` was checked against the settings the pipelines were made for.
-        pipeline.map(|pipeline| (kernel, pipeline)).ok_or(RelightError::Settings {
+        let pipeline = self.vertex_pipelines.get(&source).ok_or(RelightError::Settings {
             what: "this combination of inputs has no kernel",
-            mend: "set Settings::visibility when instances have dynamic visibility",
-        })
-    }
-
-    /// What a binding number of the kernels over vertices stands for.
-    fn resource(&self, binding: u32, kind: BindingKind, instance: u32, mesh: u32) -> Resource {
-        match (binding, kind) {
-            (0, _) => Resource::Vectors(mesh),
-            (1, BindingKind::UniformBuffer) => Resource::Lights,
-            (1, _) => Resource::VertexLight(instance),
-            (2, _) => Resource::Results,
-            (3, _) => Resource::Visibility(instance),
-            (_, BindingKind::UniformBuffer) => Resource::Matrices,
-            _ => Resource::Tensor,
-        }
+            mend: "set Settings::visibility or Settings::normals when instances have them",
+        })?;
+        Ok((kernel, pipeline))
     }
 
     /// Makes sure that a resource of the host's or of ours is known to the frame.
@@ -145,47 +138,55 @@ impl Relight {
                     builder.resident(resource, tensor, access);
                 }
             }
-            Resource::VertexLight(_) | Resource::Visibility(_) => builder.host(resource),
+            Resource::VertexLight(_) | Resource::Visibility(_) | Resource::Normals(_) => {
+                builder.host(resource);
+            }
             _ => {}
         }
     }
 
-    /// The bindings of one chunk of an instance: every resource from the chunk's first vertex on.
+    /// A binding of one chunk of an instance: the resource from the chunk's first vertex on.
     fn bind(
         &self,
-        kernel: &Kernel,
+        binding: &kernels::Binding,
+        resource: Resource,
+        instance: u32,
         mesh: &Mesh,
         chunk: &Chunk,
-        instance: u32,
-        mesh_index: u32,
         range: &ResultRange,
-    ) -> Vec<Bound> {
+    ) -> Bound {
         let coefficients = self.settings.coefficients() as u64;
         let of_vertices = |bytes: u64| (u64::from(chunk.first) * bytes, u64::from(chunk.count) * bytes);
-        let bind = |binding: &kernels::Binding| {
-            let resource = self.resource(binding.binding, binding.kind, instance, mesh_index);
-            let (offset, size) = match resource {
-                Resource::Vectors(_) => mesh.vector_range(&self.settings, chunk),
-                Resource::Lights => (u64::from(instance) * self.light_stride(), 16 * coefficients),
-                Resource::Matrices => {
-                    (u64::from(instance) * self.matrix_stride(), 16 * u64::from(self.matrix_elements()))
-                }
-                Resource::VertexLight(_) => of_vertices(12 * coefficients),
-                Resource::Visibility(_) => of_vertices(4 * coefficients),
-                Resource::Tensor => (0, self.tensor.as_ref().map_or(0, |tensor| tensor.buffer().size())),
-                _ => {
-                    let (offset, size) = of_vertices(self.settings.output_bytes());
-                    (range.offset + offset, size)
-                }
-            };
-            Bound {
-                binding: binding.binding,
-                uniform: binding.kind == BindingKind::UniformBuffer,
-                resource,
-                offset,
-                size,
+        let (offset, size) = match resource {
+            Resource::Vectors(_) => mesh.vector_range(&self.settings, chunk),
+            Resource::Lights => (u64::from(instance) * self.light_stride(), 16 * coefficients),
+            Resource::Matrices => {
+                (u64::from(instance) * self.matrix_stride(), 16 * u64::from(self.matrix_elements()))
+            }
+            Resource::VertexLight(_) => of_vertices(12 * coefficients),
+            Resource::Visibility(_) => of_vertices(4 * coefficients),
+            Resource::Normals(_) => of_vertices(12),
+            Resource::Tensor => (0, self.tensor.as_ref().map_or(0, |tensor| tensor.buffer().size())),
+            _ => {
+                let (offset, size) = of_vertices(self.settings.output_bytes());
+                (range.offset + offset, size)
             }
         };
-        kernel.bindings.iter().map(bind).collect()
+        let uniform = binding.kind == BindingKind::UniformBuffer;
+        Bound { binding: binding.binding, uniform, resource, offset, size }
+    }
+}
+
+/// What a binding of the kernels over vertices stands for.
+fn resource(binding: &kernels::Binding, source: Source, instance: u32, mesh: u32) -> Resource {
+    match (binding.binding, binding.kind) {
+        (0, _) if source.has_normals() => Resource::Normals(instance),
+        (0, _) => Resource::Vectors(mesh),
+        (1, BindingKind::UniformBuffer) => Resource::Lights,
+        (1, _) => Resource::VertexLight(instance),
+        (2, _) => Resource::Results,
+        (3, _) => Resource::Visibility(instance),
+        (_, BindingKind::UniformBuffer) => Resource::Matrices,
+        _ => Resource::Tensor,
     }
 }

@@ -78,7 +78,7 @@ fn build(
             Ok(())
         }));
     }
-    let plan = graph.compile(&Limits::default()).unwrap();
+    let plan = airglow_tests::plan::compile(graph, &Limits::default());
     Built { plan, imports, readback, rotations: relit.rotations, ranges: relit.ranges }
 }
 
@@ -126,7 +126,7 @@ fn without_graph(
     let mut relight = Relight::new(context, settings).unwrap();
     let mesh = relight.add_mesh(context, "mesh", vectors.len() as u32 / 16, Some(vectors)).unwrap();
     let light = CaseLight::Environment(Texels { width: WIDTH, height: HEIGHT, rgb: sky }, turn);
-    bench.results(&mut relight, &Case { light, mesh, rotation, visibility: None }).unwrap()
+    bench.results(&mut relight, &Case { orientation: rotation.into(), ..Case::new(light, mesh) }).unwrap()
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn both_roads_give_the_same_bits_and_rotations_follow() {
         let mut relight = Relight::new(context, settings).unwrap();
         let (mesh, vectors) = mesh(context, &mut relight, 1500, 2);
         let (first, second) = (DQuat::from_rotation_x(0.3), DQuat::from_rotation_z(-2.0));
-        let instance = Instance { rotation: first, ..Instance::new(mesh) };
+        let instance = Instance { orientation: first.into(), ..Instance::new(mesh) };
         let built = build(context, &mut relight, &sky, 1, vec![instance]);
         let rotations = built.rotations.clone().unwrap();
         let mut execution = Execution::prepare(context, built.plan).unwrap();
@@ -169,7 +169,8 @@ fn every_instance_has_its_own_rotation_and_range() {
         let which = [0, 1, 0];
         let rotations =
             [DQuat::from_rotation_x(1.0), DQuat::from_rotation_z(0.4), DQuat::from_rotation_y(3.0)];
-        let instance = |i: usize| Instance { rotation: rotations[i], ..Instance::new(meshes[which[i]].0) };
+        let instance =
+            |i: usize| Instance { orientation: rotations[i].into(), ..Instance::new(meshes[which[i]].0) };
         let built = build(context, &mut relight, &sky, 1, (0..3).map(instance).collect());
         let ranges = built.ranges.clone();
         let results = run_once(&fixture, built);
@@ -243,7 +244,7 @@ fn without_light_or_instances_the_pass_is_left_out() {
         let frame = GraphFrame { light: Light::None, instances, target: None };
         let relit = relight.add(context, &mut graph, &mut imports, &frame).unwrap();
         assert!(relit.results.is_none() && relit.ranges.is_empty());
-        let plan = graph.compile(&Limits::default()).unwrap();
+        let plan = airglow_tests::plan::compile(graph, &Limits::default());
         assert_eq!(plan.steps().len(), 0);
         assert!(plan.left_out()[0].why.contains(why), "{:?}", plan.left_out());
     }
@@ -263,7 +264,7 @@ fn inputs_that_do_not_fit_the_settings_are_refused() {
     assert!(refusal(Light::Vertices, Instance::new(mesh)).contains("Settings::light"));
     let shadowed = Instance { visibility: Some(()), ..Instance::new(mesh) };
     assert!(refusal(uniform, shadowed).contains("Settings::visibility"));
-    let still = Instance { rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..Instance::new(mesh) };
+    let still = Instance { orientation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0).into(), ..Instance::new(mesh) };
     assert!(refusal(uniform, still).contains("zero"));
     assert_eq!(refusal(uniform, Instance::new(mesh)), "");
     let nan = vec![f32::NAN; 32];

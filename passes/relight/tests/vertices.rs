@@ -95,7 +95,7 @@ impl Input {
             LightKind::Vertex => CaseLight::Vertices(&self.vertex_light),
         };
         let visibility = settings.visibility.then_some(&self.visibility[..]);
-        let case = Case { light, mesh, rotation: self.rotation, visibility };
+        let case = Case { orientation: self.rotation.into(), visibility, ..Case::new(light, mesh) };
         bench.results(&mut relight, &case).unwrap()
     }
 }
@@ -145,7 +145,8 @@ fn incident_radiance_from_half_floats_and_from_dynamic_visibility_alone() {
                 LightKind::Vertex => CaseLight::Vertices(&input.vertex_light),
             };
             let visibility = Some(&input.visibility[..]);
-            let case = Case { light: case_light, mesh, rotation: input.rotation, visibility };
+            let orientation = input.rotation.into();
+            let case = Case { orientation, visibility, ..Case::new(case_light, mesh) };
             let values = bench.results(&mut relight, &case).unwrap();
             // With dynamic visibility in the place of the static one the result is the same.
             let baked = Input { vectors: input.visibility.clone(), ..Input::new(3, 90) };

@@ -3,8 +3,13 @@
 // function; explicit fma and a fixed order keep their bits equal.
 //
 // VISIBILITY 0: none, 1: a dynamic visibility vector for each vertex
+// STORAGE_NORMALS  transfer of the current normals; otherwise baked, see transfer.glsl
 
+#ifdef STORAGE_NORMALS
+#include "relight/normals.glsl"
+#else
 #include "relight/transfer.glsl"
+#endif
 
 #if VISIBILITY == 0
 
@@ -31,6 +36,7 @@ void light_block(uint vertex, uint block, out vec3 light[4])
 
 vec3 relight_colour(uint vertex)
 {
+    load_transfer(vertex);
     vec3 sum = vec3(0.0);
     [[unroll]] for (uint block = 0u; block < uint(BLOCKS); ++block) {
         vec3 light[4];
@@ -47,6 +53,7 @@ vec3 relight_colour(uint vertex)
 
 vec3 relight_colour(uint vertex)
 {
+    load_transfer(vertex);
     precise vec3 sum = vec3(0.0);
     uint at = 0u;
     for (uint i = 0u; i < uint(COEFFICIENTS); ++i) {
@@ -79,6 +86,7 @@ uint product_vertex; // the vertex whose product is made
 vec3 relight_colour(uint vertex)
 {
     product_vertex = vertex;
+    load_transfer(vertex);
     precise vec3 sum = vec3(0.0);
     for (uint i = 0u; i < uint(COEFFICIENTS); ++i) {
         sum = fma(vec3(sh_product(i)), light_coefficient(vertex, i), sum);

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Rotates SH RGB vectors by unit quaternions: rotated(s) = f(q^-1 s q). One workgroup a rotation: it makes the
-// matrices of all bands together, then each invocation makes one coefficient.
+// Rotates SH RGB vectors by unit quaternions: rotated(s) = f(q^-1 s q), or f(-q^-1 s q) with an inversion, for
+// which Y_lm(-s) = (-1)^l Y_lm(s). One workgroup a rotation: it makes the matrices of all bands together, then each
+// invocation makes one coefficient.
 //
 // ORDER  1-6
 
@@ -13,9 +14,14 @@ layout(std430, set = 0, binding = 0) readonly buffer Source {
     vec4 coefficients[];
 } source;
 
-layout(std430, set = 0, binding = 1) readonly buffer Quaternions {
-    vec4 values[]; // x, y, z, w
-} quaternions;
+struct Turn {
+    vec4 quaternion; // x, y, z, w
+    float odd_sign; // of the odd bands: -1 with an inversion, or 1
+};
+
+layout(std430, set = 0, binding = 1) readonly buffer Turns {
+    Turn values[];
+} turns;
 
 layout(std430, set = 0, binding = 2) buffer Rotated {
     vec4 coefficients[];
@@ -48,7 +54,7 @@ void main()
 {
     uint i = gl_LocalInvocationID.x;
     uint which = gl_WorkGroupID.x;
-    sh_rotation_build(rotation_matrix(quaternions.values[which]), i, 64u);
+    sh_rotation_build(rotation_matrix(turns.values[which].quaternion), i, 64u);
     if (i >= uint(COEFFICIENTS)) { return; }
     int l = sh_band(i);
     int m = int(i) - l * (l + 1);
@@ -57,5 +63,6 @@ void main()
         uint index = uint(l * (l + 1) + n);
         sum = fma(vec3(sh_rotation_at(l, m, n)), source.coefficients[which * strides.source + index].rgb, sum);
     }
-    rotated.coefficients[which * strides.rotated + i] = vec4(sum, 0.0);
+    float sign = (l & 1) == 1 ? turns.values[which].odd_sign : 1.0;
+    rotated.coefficients[which * strides.rotated + i] = vec4(sign * sum, 0.0);
 }

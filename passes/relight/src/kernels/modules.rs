@@ -25,31 +25,57 @@ pub(super) static ENVIRONMENT_BANDS: ByOrder = by_order!("environment_bands", ""
 pub(super) static ROTATE: ByOrder = by_order!("rotate", "");
 pub(super) static PRODUCT: ByOrder = by_order!("product", "");
 pub(super) static PRODUCT_MATRIX: ByOrder = by_order!("product_matrix", "");
-/// By visibility, light, storage.
-pub(super) static COLOUR: [[[ByOrder; 2]; 2]; 2] = [
+/// By visibility, light, then f32, f16 or normals.
+pub(super) static COLOUR: [[[ByOrder; 3]; 2]; 2] = [
     [
-        [by_order!("colour.uniform", ".f32"), by_order!("colour.uniform", ".f16")],
-        [by_order!("colour.vertex", ".f32"), by_order!("colour.vertex", ".f16")],
+        [
+            by_order!("colour.uniform", ".f32"),
+            by_order!("colour.uniform", ".f16"),
+            by_order!("colour.uniform", ".normals"),
+        ],
+        [
+            by_order!("colour.vertex", ".f32"),
+            by_order!("colour.vertex", ".f16"),
+            by_order!("colour.vertex", ".normals"),
+        ],
     ],
     [
-        [by_order!("colour.uniform", ".f32.VISIBILITY"), by_order!("colour.uniform", ".f16.VISIBILITY")],
-        [by_order!("colour.vertex", ".f32.VISIBILITY"), by_order!("colour.vertex", ".f16.VISIBILITY")],
+        [
+            by_order!("colour.uniform", ".f32.VISIBILITY"),
+            by_order!("colour.uniform", ".f16.VISIBILITY"),
+            by_order!("colour.uniform", ".normals.VISIBILITY"),
+        ],
+        [
+            by_order!("colour.vertex", ".f32.VISIBILITY"),
+            by_order!("colour.vertex", ".f16.VISIBILITY"),
+            by_order!("colour.vertex", ".normals.VISIBILITY"),
+        ],
     ],
 ];
-/// By visibility, light, storage.
-pub(super) static RECTANGLE: [[[ByOrder; 2]; 2]; 2] = [
+/// By visibility, light, then f32, f16 or normals.
+pub(super) static RECTANGLE: [[[ByOrder; 3]; 2]; 2] = [
     [
-        [by_order!("colour_rectangle.uniform", ".f32"), by_order!("colour_rectangle.uniform", ".f16")],
-        [by_order!("colour_rectangle.vertex", ".f32"), by_order!("colour_rectangle.vertex", ".f16")],
+        [
+            by_order!("colour_rectangle.uniform", ".f32"),
+            by_order!("colour_rectangle.uniform", ".f16"),
+            by_order!("colour_rectangle.uniform", ".normals"),
+        ],
+        [
+            by_order!("colour_rectangle.vertex", ".f32"),
+            by_order!("colour_rectangle.vertex", ".f16"),
+            by_order!("colour_rectangle.vertex", ".normals"),
+        ],
     ],
     [
         [
             by_order!("colour_rectangle.uniform", ".f32.VISIBILITY"),
             by_order!("colour_rectangle.uniform", ".f16.VISIBILITY"),
+            by_order!("colour_rectangle.uniform", ".normals.VISIBILITY"),
         ],
         [
             by_order!("colour_rectangle.vertex", ".f32.VISIBILITY"),
             by_order!("colour_rectangle.vertex", ".f16.VISIBILITY"),
+            by_order!("colour_rectangle.vertex", ".normals.VISIBILITY"),
         ],
     ],
 ];
@@ -66,4 +92,7 @@ pub(super) static INCIDENT_BOTH: [[ByOrder; 2]; 2] = [
 /// By light.
 pub(super) static INCIDENT_DYNAMIC: [ByOrder; 2] =
     [by_order!("incident.uniform", ".dynamic"), by_order!("incident.vertex", ".dynamic")];
+/// By light.
+pub(super) static INCIDENT_OPEN: [ByOrder; 2] =
+    [by_order!("incident_open.uniform", ""), by_order!("incident_open.vertex", "")];
 pub(super) static RECTANGLE_VERTEX: &[u8] = module!("rectangle");

@@ -45,8 +45,7 @@ fn mesh(
     let mut relight = Relight::new(bench.context, settings)?;
     let mesh = relight.add_mesh(bench.context, name, vertices, Some(&vectors))?;
     let light = CaseLight::Uniform(&light, turn);
-    let case = Case { light, mesh, rotation: DQuat::IDENTITY, visibility: None };
-    let colours = bench.results(&mut relight, &case)?;
+    let colours = bench.results(&mut relight, &Case::new(light, mesh))?;
     let light_length = super::length(turned.as_flattened());
     let (mut worst, mut result, mut truth) = (-1.0, [0.0; 3], [0.0; 3]);
     for (vector, colour) in vectors.chunks_exact(count).zip(colours.chunks_exact(4)) {
