@@ -56,7 +56,7 @@ pub use options::{Limits, Options};
 pub use pass::{PassBuilder, PassKind};
 pub use plan::{
     Barriers, BufferBarrier, Cause, CullReason, Culled, ImageBarrier, Lifetime, Plan, PlanAccess, PlanBytes,
-    PlanExport, PlanHistory, PlanResource, Step,
+    PlanDifference, PlanExport, PlanHistory, PlanResource, Resized, Step,
 };
 pub use resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
 pub use topology::Topology;

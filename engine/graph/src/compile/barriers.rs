@@ -159,7 +159,8 @@ impl Row<'_> {
     /// write would race with them.
     fn cover_reads(&mut self, last: Option<&Epoch>, exit: State) {
         let Some(last) = last.filter(|last| !last.writes() && !exit.stage.is_empty()) else { return };
-        let others = last.stage & !exit.stage;
+        let everything = exit.stage.contains(PipelineStageFlags2::ALL_COMMANDS);
+        let others = if everything { PipelineStageFlags2::NONE } else { last.stage & !exit.stage };
         if !others.is_empty() && !writes(exit.access) {
             let reads = Epoch { stage: others, ..*last };
             let barrier =

@@ -2,12 +2,14 @@
 
 mod barrier;
 mod bytes;
+mod difference;
 mod json;
 mod mermaid;
 mod text;
 
 pub use barrier::{Barriers, BufferBarrier, Cause, ImageBarrier};
 pub use bytes::PlanBytes;
+pub use difference::{PlanDifference, Resized};
 
 use crate::access::{Access, State};
 use crate::graph::LeftOut;
