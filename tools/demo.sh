@@ -27,7 +27,7 @@ echo "Expect 5 to 8 minutes on two cores the first time, most of it building; ab
 require_toolchain
 packages=(libvulkan1)
 # A driver of the machine's own is used; without any, Mesa's brings the software renderer.
-if ! find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name '*.json' 2> /dev/null | grep -q .; then
+if [ -z "$(drivers '*.json')" ]; then
     packages+=(mesa-vulkan-drivers)
 fi
 install_packages "${packages[@]}"
@@ -42,13 +42,14 @@ say "the device"
 "$airglow" devices
 say "baking and drawing $scene"
 "$airglow" render "$scene" "${device[@]}" -o out/demo.png --stat out/demo.json
+"$airglow" render "$scene" "${device[@]}" --without relight --split -o out/demo-split.png --quiet > /dev/null
 say "the plan"
 "$airglow" plan "$scene" "${device[@]}" | tee out/plan.txt
 say "measuring error against time"
 "$airglow" report relight --scene "$scene" "${device[@]}" -o out/report --quick
 
 say "done in $SECONDS s"
-echo "picture          $PWD/out/demo.png"
+echo "picture          $PWD/out/demo.png (out/demo-split.png: left half without the pass)"
 echo "timings          $PWD/out/demo.json"
 echo "plan             $PWD/out/plan.txt"
 find "$PWD/out/report" -name '*.html' -printf 'error/time plot  %p\n'

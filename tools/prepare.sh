@@ -39,12 +39,20 @@ require_toolchain() {
     command -v cc > /dev/null || install_packages gcc libc6-dev
 }
 
+# Vulkan drivers of this machine whose file name matches; none is not an error.
+drivers() {
+    local folder
+    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d; do
+        [ ! -d "$folder" ] || find "$folder" -name "$1"
+    done
+}
+
 # Makes tests run on lavapipe, on two threads, whatever the machine has, with its compiled shaders kept between runs.
 use_lavapipe() {
     # The software renderer and the layers that tests run under; a C++ compiler for the shader compiler of tools/xtask.
     install_packages libvulkan1 mesa-vulkan-drivers vulkan-validationlayers g++
     local driver
-    driver=$(find /usr/share/vulkan/icd.d /etc/vulkan/icd.d -name 'lvp_icd*.json' 2> /dev/null | head -n 1)
+    driver=$(drivers 'lvp_icd*.json' | head -n 1)
     [ -n "$driver" ] || fail "no lvp_icd*.json under /usr/share/vulkan/icd.d; mesa-vulkan-drivers should have put it there"
     export VK_DRIVER_FILES=$driver VK_ICD_FILENAMES=$driver # the second name is that of older loaders
     export LP_NUM_THREADS=2
