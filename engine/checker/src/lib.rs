@@ -26,6 +26,7 @@ mod event;
 mod mutation;
 mod replay;
 mod report;
+mod sharing;
 mod structure;
 mod trace;
 mod uses;
@@ -33,6 +34,7 @@ mod violation;
 
 pub use mutation::{Edit, Mutation};
 pub use report::{Report, Superfluous};
+pub use sharing::check_sharing;
 pub use trace::{Barrier, Moment, Role, Trace};
 pub use violation::{Kind, Violation};
 

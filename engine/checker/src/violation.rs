@@ -21,6 +21,8 @@ pub enum Kind {
     Ownership,
     /// A use whose stages, accesses or layout are not those of what it says it is.
     Use,
+    /// Transients in one place at once, or one that does not wait for its predecessor there.
+    Sharing,
     /// A barrier or use that names what is not there.
     Structure,
 }

@@ -4,7 +4,7 @@
 
 mod random;
 
-use airglow_checker::{Kind, Mutation, Trace, check};
+use airglow_checker::{Kind, Mutation, Trace, check, check_sharing};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
@@ -105,4 +105,25 @@ fn every_swap_of_dependent_passes_is_rejected() {
     }
     println!("{MUTATED} graphs: {swapped} swaps of dependent passes rejected");
     assert!(swapped > MUTATED / 6);
+}
+
+#[test]
+fn shared_memory_is_taken_over_in_turn() {
+    let mut runner = TestRunner::deterministic();
+    let (mut saving, mut handovers) = (0, 0);
+    for _ in 0..MUTATED {
+        let dice = dice().new_tree(&mut runner).unwrap().current();
+        let Some(plan) = compile(&dice, None) else { continue };
+        let sharing = plan.sharing();
+        check_sharing(&plan, &sharing).unwrap_or_else(|violation| panic!("{violation}\n{}", plan.text()));
+        saving += usize::from(sharing.saved() > 0);
+        handovers += sharing.handovers.len();
+        for i in 0..sharing.handovers.len() {
+            let mut without = sharing.clone();
+            let dropped = without.handovers.remove(i);
+            assert!(check_sharing(&plan, &without).is_err(), "{dropped:?} is redundant in {dice:?}");
+        }
+    }
+    println!("{MUTATED} graphs: {saving} would save memory by sharing; {handovers} handovers, each needed");
+    assert!(saving > 50 && handovers > 100);
 }

@@ -55,8 +55,8 @@ pub use history::History;
 pub use options::{Limits, Options};
 pub use pass::{PassBuilder, PassKind};
 pub use plan::{
-    Barriers, BufferBarrier, Cause, CullReason, Culled, ImageBarrier, Lifetime, Plan, PlanAccess, PlanBytes,
-    PlanDifference, PlanExport, PlanHistory, PlanResource, Resized, Step,
+    Barriers, BufferBarrier, Cause, CullReason, Culled, Handover, ImageBarrier, Lifetime, Placement, Plan,
+    PlanAccess, PlanBytes, PlanDifference, PlanExport, PlanHistory, PlanResource, Resized, Sharing, Step,
 };
 pub use resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
 pub use topology::Topology;

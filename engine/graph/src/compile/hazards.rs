@@ -193,4 +193,37 @@ mod tests {
         let message = run(&mut graph).unwrap_err().to_string();
         assert!(message.contains("`two` writes `b`") && message.contains("by `one`"), "{message}");
     }
+
+    /// The message about a history of which one pass reads the previous half and writes these mips of the other.
+    fn history_message(mips: u32, access: Access) -> Option<String> {
+        let mut graph = Graph::new();
+        let desc = crate::ImageDesc { mips: 2, ..crate::ImageDesc::new_2d(4, 4, vk::Format::R32_SFLOAT) };
+        let history = graph.history_image("history", desc, access);
+        let mut pass = graph.pass("accumulate", PassKind::Compute);
+        pass.read(&history.previous, Access::ComputeSampled);
+        pass.write(history.current.mips(0, mips), WRITE);
+        run(&mut graph).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_current_half_of_a_history_is_written_whole_and_rests_in_a_state_that_reads() {
+        assert_eq!(history_message(2, Access::ComputeSampled), None);
+        let partly = history_message(1, Access::ComputeSampled).unwrap_or_default();
+        assert!(partly.contains("history (current)") && partly.contains("mip 1"), "{partly}");
+        let resting = history_message(2, WRITE).unwrap_or_default();
+        assert!(resting.contains("a state that reads"), "{resting}");
+    }
+
+    #[test]
+    fn the_halves_of_a_history_keep_their_roles() {
+        let mut graph = Graph::new();
+        let history = graph.history_buffer("history", BufferDesc::new(4), Access::ComputeStorageRead);
+        let old = graph.clone();
+        write(&mut graph, "writes the past", history.previous);
+        assert!(run(&mut graph).is_err_and(|error| error.to_string().contains("write its current half")));
+        let mut graph = old;
+        let mut pass = graph.pass("reads what is two frames old", PassKind::Compute);
+        pass.write(history.current, Access::ComputeStorageReadWrite);
+        assert!(matches!(run(&mut graph), Err(GraphError::ReadOfNeverWritten { .. })));
+    }
 }

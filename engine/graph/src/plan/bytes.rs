@@ -12,6 +12,8 @@ pub struct PlanBytes {
     pub transient: u64,
     /// The largest sum of transients alive at one step: what perfect aliasing would need.
     pub transient_peak: u64,
+    /// What sharing memory would save of it ([`Plan::sharing`]): an estimate.
+    pub sharing_would_save: u64,
     /// Resources whose size is not known before allocation, and not counted above.
     pub unknown: usize,
 }
@@ -32,6 +34,7 @@ impl<R> Plan<R> {
             imported: sum(true),
             transient: sum(false),
             transient_peak: (0..self.steps.len()).map(alive).max().unwrap_or(0),
+            sharing_would_save: self.sharing().saved(),
             unknown: used().filter(|r| r.bytes.is_none()).count(),
         }
     }

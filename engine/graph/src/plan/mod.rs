@@ -5,11 +5,13 @@ mod bytes;
 mod difference;
 mod json;
 mod mermaid;
+mod sharing;
 mod text;
 
 pub use barrier::{Barriers, BufferBarrier, Cause, ImageBarrier};
 pub use bytes::PlanBytes;
 pub use difference::{PlanDifference, Resized};
+pub use sharing::{Handover, Placement, Sharing};
 
 use crate::access::{Access, State};
 use crate::graph::LeftOut;

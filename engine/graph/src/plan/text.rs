@@ -41,7 +41,11 @@ impl<R> Plan<R> {
         let bytes = self.bytes();
         writeln!(out, "bytes")?;
         writeln!(out, "  imported {} B", bytes.imported)?;
-        writeln!(out, "  transient {} B, at most {} B at once", bytes.transient, bytes.transient_peak)
+        writeln!(out, "  transient {} B, at most {} B at once", bytes.transient, bytes.transient_peak)?;
+        if bytes.sharing_would_save > 0 {
+            writeln!(out, "  sharing memory would save about {} B", bytes.sharing_would_save)?;
+        }
+        Ok(())
     }
 
     fn write_resource(&self, out: &mut String, resource: &PlanResource) -> fmt::Result {
