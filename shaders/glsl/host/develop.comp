@@ -21,9 +21,11 @@ layout(std430, set = 0, binding = 2) buffer Display {
 } display_picture;
 
 layout(push_constant) uniform Settings {
-    uvec2 size;   // pixels of the picture
+    uvec2 size;   // pixels of the view
     uint samples; // along each side of a pixel
     float exposure;
+    uint column;     // of the picture, where the view begins
+    uint row_length; // pixels of a row of the picture
 } settings;
 
 void main()
@@ -40,7 +42,7 @@ void main()
         }
     }
     float weight = 1.0 / float(settings.samples * settings.samples);
-    uint at = pixel.y * settings.size.x + pixel.x;
+    uint at = pixel.y * settings.row_length + settings.column + pixel.x;
     linear_picture.values[3u * at] = sum.r * weight;
     linear_picture.values[3u * at + 1u] = sum.g * weight;
     linear_picture.values[3u * at + 2u] = sum.b * weight;

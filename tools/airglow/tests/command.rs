@@ -55,10 +55,88 @@ fn exit_codes_say_what_went_wrong() {
 fn a_scene_without_an_environment_leaves_relighting_out_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let spot = path(&root(), "assets/mesh/spot.glb");
-    let plan = succeeds(folder.path(), &["plan", &spot, "--shadow", "unshadowed", "--validate"]);
-    let left_out = plan.split("left out").nth(1).unwrap();
-    assert!(left_out.contains("relight: the scene has no environment"), "{plan}");
-    assert!(!plan.contains("relight colours"), "{plan}");
+    let plan = succeeds(folder.path(), &["plan", &spot, "--validate", "--json"]);
+    let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+    let left_out = &plan["left_out"][0];
+    assert_eq!(
+        (&left_out["what"], &left_out["why"]),
+        (&"relight".into(), &"the scene has no environment".into())
+    );
+    // Transfer of order 4 and four floats of colour for each vertex.
+    let vertices = airglow_scene::load(Path::new(&spot)).unwrap().meshes[0].positions.len() as u64;
+    assert_eq!(left_out["bytes"].as_u64(), Some(vertices * (16 * 4 + 16)), "{left_out}");
+    assert!(left_out["time"].is_null(), "nothing was measured: {left_out}");
+    assert!(left_out["would_return"].as_str().unwrap().contains("--environment"), "{left_out}");
+    assert!(!plan["steps"].to_string().contains("relight"), "{plan}");
+    assert!(!folder.path().join(".cache").exists(), "nothing is baked");
+}
+
+/// Bytes that the device holds for an owner, as `--stat` writes them.
+fn held(folder: &Path, owner: &str) -> u64 {
+    let stat: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("stat.json")).unwrap()).unwrap();
+    let owners = stat["memory"].as_array().unwrap();
+    owners.iter().filter(|entry| entry["owner"] == owner).map(|entry| entry["bytes"].as_u64().unwrap()).sum()
+}
+
+/// No bake, no kernels, no memory; and with the pass there are all three.
+#[test]
+fn what_is_left_out_is_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let lit = path(&root(), "assets/scenes/spot.toml");
+    let dark = path(&root(), "assets/mesh/spot.glb");
+    let small = ["-o", "a.png", "--size", "32x24", "--frames", "1", "--rays", "16", "--stat", "stat.json"];
+    let render = |scene: &str, more: &[&str]| {
+        succeeds(here, &[&["render", scene], &small[..], more].concat());
+        (held(here, "relight"), here.join(".cache").exists())
+    };
+    assert_eq!(render(&lit, &["--without", "relight"]), (0, false), "--without relight");
+    assert_eq!(render(&lit, &["--reference", "--reference-rays", "16"]), (0, false), "--reference");
+    assert_eq!(render(&dark, &[]), (0, false), "no environment");
+    let (bytes, baked) = render(&lit, &[]);
+    assert!(bytes > 0 && baked, "{bytes} bytes with the pass, cache {baked}");
+}
+
+/// What does not depend on the view is there once; what does, once for each view.
+#[test]
+fn views_share_the_light_of_the_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let scene = path(&root(), "assets/scenes/spot.toml");
+    let count = |views: &str| {
+        let plan = succeeds(here, &["plan", &scene, "--rays", "16", "--views", views, "--json"]);
+        let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+        let names: Vec<String> = plan["steps"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|step| step["name"].as_str().unwrap().into())
+            .collect();
+        let those = |name: &str| names.iter().filter(|step| step.starts_with(name)).count();
+        [those("relight environment rows"), those("relight"), those("scene draw"), those("tone map")]
+    };
+    let (one, two) = (count("1"), count("2"));
+    assert_eq!([one[0], one[2], one[3]], [1, 1, 1]);
+    assert_eq!(two, [1, one[1], 2, 2]);
+    let pair = ["render", &scene, "-o", "pair.exr", "--size", "160x120", "--samples", "1", "--views", "2"];
+    succeeds(here, &[&pair[..], &["--rays", "16", "--frames", "2", "--validate"]].concat());
+    let pair = airglow_scene::image_io::read_image(&here.join("pair.exr")).unwrap();
+    assert_eq!((pair.width, pair.height), (320, 120));
+    let eye = |first: usize| -> Vec<[f32; 3]> {
+        pair.pixels.chunks(320).flat_map(|row| row[first..first + 160].to_vec()).collect()
+    };
+    let (left, right) = (eye(0), eye(160));
+    assert_ne!(left, right, "the eyes stand apart");
+    // Seen from further right, what is near lies further left: in the middle, where the mesh stands, the pair agrees
+    // best with the right eye's picture moved right.
+    let difference = |shift: isize| -> f32 {
+        let at = |x: isize, y: isize| (160 * y + x) as usize;
+        let inner = (45..75).flat_map(|y| (60..100).map(move |x| (at(x, y), at(x - shift, y))));
+        inner.map(|(l, r)| (0..3).map(|c| (left[l][c] - right[r][c]).abs()).sum::<f32>()).sum()
+    };
+    let best = (-6..=6).min_by(|&a, &b| difference(a).total_cmp(&difference(b))).unwrap();
+    assert!(best > 0, "the right eye's picture fits {best} pixels to the right");
 }
 
 /// The picture that the pass lights is close to the one that rays light, and far from the one without the pass.

@@ -1,5 +1,6 @@
 //! `airglow plan`: what a frame does, and what it does without.
 
+use airglow_scene::Scene;
 use clap::{Args, ValueEnum};
 use glam::DQuat;
 
@@ -7,8 +8,9 @@ use crate::cli::Global;
 use crate::commands::render::PassName;
 use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
-use crate::host::renderer::{self, Renderer, Settings};
-use crate::host::{device, transfer};
+use crate::host::device::{self, Device};
+use crate::host::lighting::Source;
+use crate::host::renderer::{Renderer, Settings};
 use crate::output::Output;
 
 /// Print the plan of a frame: passes in order, barriers and their causes, memory; and what was left out, why, what
@@ -17,6 +19,7 @@ use crate::output::Output;
 #[command(after_help = "Examples:
   airglow plan assets/scenes/spot.toml
   airglow plan assets/scenes/spot.toml --as mermaid > plan.mmd
+  airglow plan assets/scenes/spot.toml --without relight --measure      what it would take
   airglow plan assets/mesh/spot.glb          no environment: relighting is left out, and the plan says so")]
 pub struct Arguments {
     #[command(flatten)]
@@ -27,6 +30,12 @@ pub struct Arguments {
     /// Leave a pass out.
     #[arg(long, value_enum)]
     without: Option<PassName>,
+    /// Measure the time that leaving it out saves: it is baked and drawn with for a few frames, and dropped again.
+    #[arg(long, requires = "without")]
+    measure: bool,
+    /// Views of the frame.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
+    views: u32,
 }
 
 /// `--as`.
@@ -43,21 +52,26 @@ pub enum Form {
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
-    let baked = transfer::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
-    let size = [960, 540];
-    let text = device::with(global, &renderer::requirements(&scene), |device| {
-        let mut renderer = Renderer::new(device, &scene, &baked, size)?;
-        let settings = Settings {
-            size,
-            samples: 1,
-            exposure: 1.0,
-            turn: DQuat::IDENTITY,
-            spin: 0.0,
-            without_relight: arguments.without == Some(PassName::Relight),
+    let (without, cache) = (arguments.without == Some(PassName::Relight), &arguments.scene.cache);
+    let source = Source::of_scene(&scene, without, cache, output)?;
+    let whole = arguments.measure.then(|| Source::of_scene(&scene, false, cache, output)).transpose()?;
+    let settings = Settings {
+        size: [960, 540],
+        views: arguments.views,
+        samples: 1,
+        exposure: 1.0,
+        turn: DQuat::IDENTITY,
+        spin: 0.0,
+        without_relight: without,
+    };
+    let requirements = whole.as_ref().unwrap_or(&source).requirements(&scene);
+    let text = device::with(global, &requirements, |device| {
+        let seconds = match &whole {
+            Some(whole) => measure(device, &scene, whole, &settings)?,
+            None => None,
         };
-        if settings.without_relight && scene.environment.is_some() {
-            renderer.measure_relight(&settings)?;
-        }
+        let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
+        renderer.say_relight_takes(seconds);
         let plan = renderer.plan(&settings)?;
         let form = if output.json() { Form::Json } else { arguments.form };
         Ok(match form {
@@ -68,4 +82,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     })?;
     println!("{}", text.trim_end());
     Ok(())
+}
+
+/// What the pass takes in a frame that has it, seconds.
+fn measure(device: &Device<'_>, scene: &Scene, source: &Source, settings: &Settings) -> Outcome<Option<f64>> {
+    let mut renderer = Renderer::new(device, scene, source, settings.picture_size())?;
+    renderer.measure_relight(&Settings { without_relight: false, ..*settings })
 }

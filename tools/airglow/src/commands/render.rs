@@ -13,8 +13,9 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
 use crate::host::environment_samples::EnvironmentSamples;
-use crate::host::renderer::{self, Picture, Renderer, Settings, WARM_UP};
-use crate::host::{device, transfer, truth};
+use crate::host::lighting::Source;
+use crate::host::renderer::{Picture, Renderer, Settings, WARM_UP};
+use crate::host::{device, truth};
 use crate::output::Output;
 use crate::report::model::Machine;
 
@@ -28,6 +29,7 @@ use crate::report::model::Machine;
   airglow render assets/scenes/spot.toml -o spot.exr --size 1920x1080 --stat spot.json --frames 200
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
   airglow render assets/scenes/demo.toml -o both.png --without relight --split
+  airglow render assets/scenes/demo.toml -o pair.png --views 2
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
     #[command(flatten)]
@@ -35,9 +37,12 @@ pub struct Arguments {
     /// Where the picture goes: .exr (scene-linear) or .png. May be given twice, for both.
     #[arg(long, short = 'o', value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
-    /// Pixels of the picture.
+    /// Pixels of each view.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size)]
     size: [u32; 2],
+    /// Views, drawn side by side into one picture from cameras in a row, 64 mm apart: 2 make a stereo pair.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
+    views: u32,
     /// Samples along each side of a pixel.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     samples: u32,
@@ -121,15 +126,14 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         check_extension(path)?;
     }
     let scene = arguments.scene.load(output)?;
-    let baked = transfer::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
-    let truth = arguments.reference.then(|| reference(&scene, arguments, output)).transpose()?;
-    let requirements = renderer::requirements(&scene);
-    let (picture, stat) = device::with(global, &requirements, |device| {
-        let mut renderer = Renderer::new(device, &scene, &baked, arguments.size)?;
-        if let Some(colours) = &truth {
-            renderer.light_by(colours)?;
-        }
-        let settings = settings(arguments, &scene, &mut renderer)?;
+    let source = match arguments.reference {
+        true => Source::Colours(reference(&scene, arguments, output)?),
+        false => Source::of_scene(&scene, arguments.leaves_out_relight(), &arguments.scene.cache, output)?,
+    };
+    let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
+        let mut settings = settings(arguments);
+        let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
+        settings.exposure = exposure(arguments, &scene, &mut renderer, &settings)?;
         let mut picture = renderer.draw(&settings, arguments.frames as usize)?;
         if arguments.split {
             picture.replace_left_half(&renderer.draw(&Settings { without_relight: true, ..settings }, 1)?);
@@ -148,25 +152,41 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     output.result(&stat, text)
 }
 
-/// The settings of the final frames; automatic exposure looks at one frame first.
-fn settings(arguments: &Arguments, scene: &Scene, renderer: &mut Renderer<'_>) -> Outcome<Settings> {
-    let mut settings = Settings {
+/// The settings of the frames but for their exposure.
+fn settings(arguments: &Arguments) -> Settings {
+    Settings {
         size: arguments.size,
+        views: arguments.views,
         samples: arguments.samples,
         exposure: 1.0,
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
-        without_relight: arguments.without == Some(PassName::Relight) && !arguments.split,
-    };
-    settings.exposure = match (arguments.exposure, scene.exposure) {
-        (Some(factor), _) if factor > 0.0 && factor.is_finite() => factor,
+        without_relight: arguments.leaves_out_relight(),
+    }
+}
+
+/// As asked for, or as the scene file says; automatic exposure looks at one frame first.
+fn exposure(
+    arguments: &Arguments,
+    scene: &Scene,
+    renderer: &mut Renderer<'_>,
+    settings: &Settings,
+) -> Outcome<f32> {
+    match (arguments.exposure, scene.exposure) {
+        (Some(factor), _) if factor > 0.0 && factor.is_finite() => Ok(factor),
         (Some(factor), _) => {
-            return Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")));
+            Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")))
         }
-        (None, Exposure::Fixed { scale }) => scale,
-        (None, automatic) => automatic.scale(&renderer.draw(&settings, 1)?.linear.pixels),
-    };
-    Ok(settings)
+        (None, Exposure::Fixed { scale }) => Ok(scale),
+        (None, automatic) => Ok(automatic.scale(&renderer.draw(settings, 1)?.linear.pixels)),
+    }
+}
+
+impl Arguments {
+    /// Whether the pass is not even there; a split picture needs it.
+    fn leaves_out_relight(&self) -> bool {
+        self.without == Some(PassName::Relight) && !self.split
+    }
 }
 
 /// Colours of all vertices of all instances by rays; shadows are cast as the bake casts them.
@@ -186,8 +206,8 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
     let timing = picture.timing.as_ref();
     Stat {
         machine: device.machine(),
-        width: settings.size[0],
-        height: settings.size[1],
+        width: settings.picture_size()[0],
+        height: settings.picture_size()[1],
         frames: timing.map_or(0, |timing| timing.frames),
         exposure: settings.exposure,
         passes: timing.map_or(Vec::new(), |timing| {

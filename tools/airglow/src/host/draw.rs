@@ -44,6 +44,17 @@ pub struct Developed {
     pub display: Handle<Buffer>,
 }
 
+/// Where in the picture a view lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Region {
+    /// Pixels of the view.
+    pub size: [u32; 2],
+    /// Its first column.
+    pub column: u32,
+    /// Pixels of a row of the picture.
+    pub row_length: u32,
+}
+
 /// `Settings` of `host/develop.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -51,6 +62,8 @@ struct DevelopConstants {
     size: [u32; 2],
     samples: u32,
     exposure: f32,
+    column: u32,
+    row_length: u32,
 }
 
 impl Pipelines {
@@ -125,20 +138,21 @@ impl Pipelines {
         hdr
     }
 
-    /// Develops the HDR target into two buffers of the host's: `samples` by `samples` texels make a pixel.
+    /// Develops the HDR target of a view into its region of two buffers of the host's: `samples` by `samples` texels
+    /// make a pixel. Returns the buffers with it in them.
     pub fn develop(
         &self,
         graph: &mut Graph<Record>,
         hdr: Handle<Image>,
         buffers: Developed,
-        size: [u32; 2],
+        region: Region,
         samples: u32,
         exposure: f32,
     ) -> Developed {
         let mut pass = graph.pass("tone map", PassKind::Compute);
         pass.read(&hdr, Access::ComputeSampled);
-        let linear = pass.write(buffers.linear, Access::ComputeStorageWrite);
-        let display = pass.write(buffers.display, Access::ComputeStorageWrite);
+        let linear = pass.update(buffers.linear, Access::ComputeStorageWrite);
+        let display = pass.update(buffers.display, Access::ComputeStorageWrite);
         let pipeline = self.develop.clone();
         pass.record(Box::new(move |recorder, resources| {
             recorder.bind_compute(
@@ -149,7 +163,8 @@ impl Pipelines {
                     Binding::storage(2, resources.buffer(&display)?),
                 ],
             )?;
-            recorder.push_constants(&DevelopConstants { size, samples, exposure })?;
+            let Region { size, column, row_length } = region;
+            recorder.push_constants(&DevelopConstants { size, samples, exposure, column, row_length })?;
             recorder.dispatch([size[0].div_ceil(8), size[1].div_ceil(8), 1])
         }));
         Developed { linear, display }

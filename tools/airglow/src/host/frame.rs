@@ -2,9 +2,10 @@
 
 use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
 use airglow_gpu::{Imports, Record};
-use airglow_graph::{Access, Graph, LeftOut};
+use airglow_graph::{Access, Graph};
 
-use super::draw::{Developed, VertexColours};
+use super::draw::{Developed, Region, VertexColours};
+use super::lighting::{Lighting, Reason, left_out};
 use super::renderer::{Renderer, Settings};
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
@@ -15,13 +16,19 @@ pub struct Declared {
     pub graph: Graph<Record>,
     /// What stands behind the imported handles.
     pub imports: Imports,
-    /// Rotations of the light; `None` where nothing is relit.
-    pub rotations: Option<Rotations>,
-    /// The view, which turns with the light.
-    pub view: SharedView,
+    /// What changes from frame to frame.
+    pub turning: Turning,
 }
 
-/// Declares a frame: environment -> light of the vertices -> scene -> picture.
+/// What changes from frame to frame while the plan stays.
+pub struct Turning {
+    /// Rotations of the light; `None` where nothing is relit.
+    pub rotations: Option<Rotations>,
+    /// The views, which turn with the light.
+    pub views: Vec<SharedView>,
+}
+
+/// Declares a frame: environment -> light of the vertices -> the scene in each view -> picture.
 pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Declared> {
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
     let context = renderer.device.context();
@@ -35,76 +42,78 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         handle
     });
 
-    // It becomes the light that leaves each vertex: by the pass, or from an array that the host brings.
+    // It becomes the light that leaves each vertex, once for all views: by the pass, or from an array that the host
+    // brings.
+    let (bytes, time) = (renderer.relight_bytes, renderer.relight_seconds);
     let mut rotations = None;
-    let colours = if let Some(truth) = &renderer.vertex_colours {
-        let why = "the vertices are lit by the ray-traced reference (--reference)";
-        graph.leave_out(left_out(renderer, why, "a frame without --reference"));
-        let state = Access::VertexBuffer;
-        let handle = graph.import_buffer("reference colours", *truth.buffer.desc(), state, state);
-        imports.buffer(&handle, &truth.buffer);
-        Some(VertexColours { buffer: handle, ranges: truth.ranges.clone() })
-    } else if settings.without_relight {
-        let why = "the host was asked to leave it out (--without relight)";
-        graph.leave_out(left_out(renderer, why, "a frame without --without relight"));
-        None
-    } else {
-        let light = match (environment, &renderer.environment) {
-            (Some(image), Some(map)) => Light::Environment(Environment {
-                image,
-                width: map.width,
-                height: map.height,
-                revision: 1,
-                rotation: settings.turn * map.rotation,
-            }),
-            _ => Light::None,
-        };
-        let instances = renderer.instances.iter().map(|instance| Instance {
-            orientation: instance.orientation,
-            ..Instance::new(renderer.meshes[instance.transfer])
-        });
-        let frame = Frame { light, instances: instances.collect(), target: None };
-        let relit = renderer.relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
-        rotations = relit.rotations;
-        let ranges = relit.ranges.iter().map(|range| (range.offset, range.size)).collect();
-        relit.results.map(|buffer| VertexColours { buffer, ranges })
+    let colours = match &mut renderer.lighting {
+        Lighting::Relight(lit) if !settings.without_relight => {
+            let light = match (environment, &renderer.environment) {
+                (Some(image), Some(map)) => Light::Environment(Environment {
+                    image,
+                    width: map.width,
+                    height: map.height,
+                    revision: 1,
+                    rotation: settings.turn * map.rotation,
+                }),
+                _ => Light::None,
+            };
+            let placed = lit.instances.iter().zip(lit.orientations());
+            let instances = placed.map(|(instance, orientation)| Instance {
+                orientation,
+                ..Instance::new(lit.meshes[instance.transfer])
+            });
+            let frame = Frame { light, instances: instances.collect(), target: None };
+            let relit = lit.relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
+            rotations = relit.rotations;
+            let ranges = relit.ranges.iter().map(|range| (range.offset, range.size)).collect();
+            relit.results.map(|buffer| VertexColours { buffer, ranges })
+        }
+        Lighting::Colours(truth) => {
+            let why = "the vertices are lit by the ray-traced reference (--reference)";
+            graph.leave_out(left_out(why, "a frame without --reference", bytes, time));
+            let state = Access::VertexBuffer;
+            let handle = graph.import_buffer("reference colours", *truth.buffer.desc(), state, state);
+            imports.buffer(&handle, &truth.buffer);
+            Some(VertexColours { buffer: handle, ranges: truth.ranges.clone() })
+        }
+        Lighting::Even(Reason::NoEnvironment) => {
+            let returns = "an environment, named in the scene file or with --environment";
+            graph.leave_out(left_out("the scene has no environment", returns, bytes, time));
+            None
+        }
+        Lighting::Even(Reason::Asked) | Lighting::Relight(_) => {
+            let why = "the host was asked to leave it out (--without relight)";
+            graph.leave_out(left_out(why, "a frame without --without relight", bytes, time));
+            None
+        }
     };
 
-    // The host draws its scene with it, at several samples a pixel, and the sky behind.
+    // The host draws its scene with it in each view, at several samples a pixel, and the sky behind.
     let samples = settings.samples;
     let size = settings.size.map(|side| side * samples);
-    let view = SharedView::new(renderer.view(settings, settings.turn));
+    let views: Vec<_> = renderer.views(settings, settings.turn).into_iter().map(SharedView::new).collect();
     let pipelines = &renderer.pipelines;
-    let hdr = pipelines.scene(&mut graph, &renderer.scene, &view, colours.as_ref(), environment, size);
-
-    // Exposure, tone map and encoding make the picture.
-    let buffers = Developed {
-        linear: graph.import_buffer(
-            "linear picture",
-            *renderer.linear.desc(),
-            Access::HostRead,
-            Access::HostRead,
-        ),
-        display: graph.import_buffer(
-            "display picture",
-            *renderer.display.desc(),
-            Access::HostRead,
-            Access::HostRead,
-        ),
-    };
-    imports.buffer(&buffers.linear, &renderer.linear).buffer(&buffers.display, &renderer.display);
-    pipelines.develop(&mut graph, hdr, buffers, settings.size, samples, settings.exposure);
-
-    Ok(Declared { graph, imports, rotations, view })
-}
-
-/// The record of the relight pass being left out by the host.
-fn left_out(renderer: &Renderer<'_>, why: &str, would_return: &str) -> LeftOut {
-    LeftOut {
-        what: "relight".to_owned(),
-        why: why.to_owned(),
-        bytes: renderer.relight_bytes(),
-        time: renderer.relight_seconds,
-        would_return: would_return.to_owned(),
+    let mut drawn = Vec::with_capacity(views.len());
+    for view in &views {
+        let colours = colours.as_ref();
+        drawn.push(pipelines.scene(&mut graph, &renderer.scene, view, colours, environment, size));
     }
+
+    // Exposure, tone map and encoding make the picture, the views side by side.
+    let mut picture = |name, buffer: &airglow_gpu::Buffer| {
+        let handle = graph.import_buffer(name, *buffer.desc(), Access::HostRead, Access::HostRead);
+        imports.buffer(&handle, buffer);
+        handle
+    };
+    let mut developed = Developed {
+        linear: picture("linear picture", &renderer.linear),
+        display: picture("display picture", &renderer.display),
+    };
+    for (column, hdr) in (0..).step_by(settings.size[0] as usize).zip(drawn) {
+        let region = Region { size: settings.size, column, row_length: settings.picture_size()[0] };
+        developed = pipelines.develop(&mut graph, hdr, developed, region, samples, settings.exposure);
+    }
+
+    Ok(Declared { graph, imports, turning: Turning { rotations, views } })
 }

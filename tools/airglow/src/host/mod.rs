@@ -1,7 +1,8 @@
 //! The first host: it opens its own device, then uses only what any engine would.
 //!
-//! `device` opens and adopts; `transfer` bakes on the CPU; `scene` and `upload` bring arrays to the device; `frame`
-//! declares a whole frame in one function; `draw` holds the host's own draws; `renderer` owns it all.
+//! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
+//! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
+//! draws; `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
 pub mod device;
@@ -11,6 +12,8 @@ pub mod environment_samples;
 #[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
+#[cfg(feature = "relight")]
+pub mod lighting;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;

@@ -2,22 +2,21 @@
 
 use std::sync::Arc;
 
-use airglow::relight::{MeshId, Relight, Storage as RelightStorage};
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, Execution, Label, Location, Requirements, Timing, TimingSummary};
-use airglow_graph::{Access, BufferDesc, Plan};
-use airglow_scene::{Camera, FloatImage, Scene, Storage};
+use airglow_gpu::{Buffer, Execution, Label, Location, Timing, TimingSummary};
+use airglow_graph::{BufferDesc, Plan};
+use airglow_scene::{Camera, FloatImage, Scene};
 use glam::DQuat;
 
 use super::device::Device;
 use super::draw::Pipelines;
 use super::environment_samples::EnvironmentSamples;
-use super::frame;
+use super::frame::{self, Declared, Turning};
+use super::lighting::{self, Lighting, Source};
 use super::scene::{self, DeviceScene};
-use super::transfer::{InstanceTransfer, SceneTransfer};
-use super::view::ViewConstants;
-use super::{upload, view};
+use super::upload;
+use super::view::{self, ViewConstants};
 use crate::failure::{Failure, Outcome};
 
 /// Everything a frame is declared from.
@@ -27,17 +26,14 @@ pub struct Renderer<'d> {
     pub(super) camera: Camera,
     pub(super) environment: Option<EnvironmentMap>,
     pub(super) ambient: [f32; 3],
-    pub(super) relight: Relight,
-    pub(super) meshes: Vec<MeshId>,
-    /// Vertices of each of `meshes`.
-    vertices: Vec<u64>,
-    pub(super) instances: Vec<InstanceTransfer>,
+    pub(super) lighting: Lighting,
     pub(super) pipelines: Pipelines,
-    pub(super) vertex_colours: Option<HostColours>,
+    /// What the pass takes, or would take.
+    pub(super) relight_bytes: u64,
+    /// What the pass takes in a frame, where that was measured.
     pub(super) relight_seconds: Option<f64>,
     pub(super) linear: Buffer,
     pub(super) display: Buffer,
-    size: [u32; 2],
 }
 
 /// What a frame needs to know of the environment beside its image.
@@ -48,17 +44,13 @@ pub struct EnvironmentMap {
     pub(super) rotation: DQuat,
 }
 
-/// Colours of all vertices that the host computed itself.
-pub struct HostColours {
-    pub(super) buffer: Buffer,
-    pub(super) ranges: Vec<(u64, u64)>,
-}
-
 /// What may change from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Pixels of the picture.
+    /// Pixels of each view.
     pub size: [u32; 2],
+    /// Views side by side in the picture.
+    pub views: u32,
     /// Samples along each side of a pixel.
     pub samples: u32,
     /// Factor from scene-linear values to the display.
@@ -67,8 +59,15 @@ pub struct Settings {
     pub turn: DQuat,
     /// Turns the environment further about the vertical axis in each frame, radians.
     pub spin: f64,
-    /// Leaves the relight pass out: ambient light only.
+    /// Leaves the relight pass out of the frame, though it is there: ambient light only.
     pub without_relight: bool,
+}
+
+impl Settings {
+    /// Pixels of the picture.
+    pub fn picture_size(&self) -> [u32; 2] {
+        [self.views * self.size[0], self.size[1]]
+    }
 }
 
 /// A picture, and what it took.
@@ -98,47 +97,18 @@ impl Picture {
 /// Frames whose times are dropped.
 pub const WARM_UP: usize = 2;
 
-/// What the device must offer for a scene of this quality.
-pub fn requirements(scene: &Scene) -> Requirements {
-    Relight::requirements(&relight_settings(scene))
-}
-
-/// The pass's settings for a scene.
-pub fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
-    airglow::relight::Settings {
-        order: scene.quality.order as usize,
-        storage: match scene.quality.storage {
-            Storage::F32 => RelightStorage::F32,
-            Storage::F16 => RelightStorage::F16,
-        },
-        ..airglow::relight::Settings::default()
-    }
-}
-
 impl<'d> Renderer<'d> {
-    /// Uploads the scene, prepares the pass with its transfer, and makes the target of `size` pixels.
-    pub fn new(
-        device: &'d Device<'d>,
-        scene: &Scene,
-        transfer: &SceneTransfer,
-        size: [u32; 2],
-    ) -> Outcome<Self> {
+    /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
+    pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
         let context = device.context();
         let device_scene = device.run(|recorder| scene::upload(recorder, scene)).map_err(Failure::work)?;
-        let mut relight = Relight::new(context, relight_settings(scene)).map_err(Failure::work)?;
-        let mut meshes = Vec::with_capacity(transfer.transfers.len());
-        for (transfer, account) in transfer.transfers.iter().zip(&transfer.accounts) {
-            let count = transfer.vertex_count as u32;
-            let mesh = relight.add_mesh(context, &account.name, count, Some(&transfer.coefficients));
-            meshes.push(mesh.map_err(Failure::work)?);
-        }
         let ambient = match &scene.environment {
             Some(environment) => {
                 EnvironmentSamples::new(environment).map_err(Failure::input)?.mean_radiance()
             }
             None => [0.0; 3],
         };
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let pixels = u64::from(picture[0]) * u64::from(picture[1]);
         let target = |name, bytes| {
             let desc = BufferDesc { size: bytes * pixels, usage: vk::BufferUsageFlags::STORAGE_BUFFER };
             context
@@ -161,57 +131,48 @@ impl<'d> Renderer<'d> {
                 rotation: environment.rotation.as_dquat(),
             }),
             ambient,
-            relight,
-            meshes,
-            vertices: transfer.transfers.iter().map(|transfer| transfer.vertex_count as u64).collect(),
-            instances: transfer.instances.clone(),
+            lighting: Lighting::new(device, scene, source)?,
             pipelines: Pipelines::new(context, hdr).map_err(Failure::work)?,
-            vertex_colours: None,
+            relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
             linear: target("linear picture", 12)?,
             display: target("display picture", 4)?,
-            size,
         })
     }
 
-    /// Lights the vertices by these colours, one list for each instance, instead of the pass.
-    pub fn light_by(&mut self, colours: &[Vec<[f32; 3]>]) -> Outcome {
-        let mut all: Vec<[f32; 4]> = Vec::new();
-        let mut ranges = Vec::with_capacity(colours.len());
-        for colours in colours {
-            ranges.push((16 * all.len() as u64, 16 * colours.len() as u64));
-            all.extend(colours.iter().map(|&[r, g, b]| [r, g, b, 1.0]));
-        }
-        let buffer = self
-            .device
-            .run(|recorder| upload::buffer(recorder, "reference colours", &all, Access::VertexBuffer))
-            .map_err(Failure::work)?;
-        self.vertex_colours = Some(HostColours { buffer, ranges });
-        Ok(())
-    }
-
-    /// The camera's view with the environment turned by `turn`.
-    pub(super) fn view(&self, settings: &Settings, turn: DQuat) -> ViewConstants {
+    /// The cameras' views, from left to right, with the environment turned by `turn`.
+    pub(super) fn views(&self, settings: &Settings, turn: DQuat) -> Vec<ViewConstants> {
         let rotation = self.environment.as_ref().map_or(DQuat::IDENTITY, |map| turn * map.rotation);
-        ViewConstants::new(&self.camera, view::aspect(settings.size), rotation.as_quat(), self.ambient)
+        let aspect = view::aspect(settings.size);
+        let constants =
+            |camera: &Camera| ViewConstants::new(camera, aspect, rotation.as_quat(), self.ambient);
+        view::row(&self.camera, settings.views).iter().map(constants).collect()
     }
 
-    /// Bytes that the pass holds and makes for this scene: transfer of all meshes, colours of all instances.
-    pub(super) fn relight_bytes(&self) -> u64 {
-        let settings = self.relight.settings();
-        let vertices = |transfer: usize| self.vertices.get(transfer).copied().unwrap_or(0);
-        let transfer: u64 = self.vertices.iter().map(|count| count * settings.vector_bytes()).sum();
-        let instances = self.instances.iter().map(|instance| vertices(instance.transfer));
-        transfer + instances.map(|count| count * settings.output_bytes()).sum::<u64>()
+    /// Turns the light and the sky of a declared frame; its plan stays.
+    fn turn(&self, turning: &Turning, settings: &Settings, turn: DQuat) -> Outcome {
+        for (shared, view) in turning.views.iter().zip(self.views(settings, turn)) {
+            shared.set(view);
+        }
+        match (&turning.rotations, &self.environment, &self.lighting) {
+            (Some(rotations), Some(map), Lighting::Relight(lit)) => {
+                rotations.set(turn * map.rotation, &lit.orientations()).map_err(Failure::work)
+            }
+            _ => Ok(()),
+        }
     }
 
-    /// Measures what leaving the pass out saves, for the plan to say: its median device time in a frame.
-    pub fn measure_relight(&mut self, settings: &Settings) -> Outcome {
-        let picture = self.draw(&Settings { without_relight: false, ..*settings }, WARM_UP + 9)?;
-        let passes = picture.timing.map_or(Vec::new(), |timing| timing.passes);
-        let ours = passes.iter().filter(|pass| pass.name.starts_with("relight"));
-        self.relight_seconds = (!passes.is_empty()).then(|| ours.map(|pass| pass.median).sum());
-        Ok(())
+    /// The median device time of the relight pass in a frame, seconds.
+    pub fn measure_relight(&mut self, settings: &Settings) -> Outcome<Option<f64>> {
+        let timing = self.draw(settings, WARM_UP + 9)?.timing;
+        let passes = timing.map_or(Vec::new(), |timing| timing.passes);
+        let ours = || passes.iter().filter(|pass| pass.name.starts_with("relight"));
+        Ok(ours().next().is_some().then(|| ours().map(|pass| pass.median).sum()))
+    }
+
+    /// What a plan says of the time that leaving the pass out saves, seconds.
+    pub fn say_relight_takes(&mut self, seconds: Option<f64>) {
+        self.relight_seconds = seconds;
     }
 
     /// The plan of a frame.
@@ -222,33 +183,26 @@ impl<'d> Renderer<'d> {
 
     /// Draws `frames` frames and reads the last one back.
     pub fn draw(&mut self, settings: &Settings, frames: usize) -> Outcome<Picture> {
-        let declared = frame::declare(self, settings)?;
-        let plan = declared.graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)?;
+        let Declared { graph, imports, turning } = frame::declare(self, settings)?;
+        let plan = graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)?;
         let context = self.device.context();
         let passes = plan.steps().len() as u32;
         let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
         // A queue without timestamps draws all the same.
         let mut timing = Timing::new(context, passes, WARM_UP, frames).ok();
-        let instances: Vec<Orientation> =
-            self.instances.iter().map(|instance| instance.orientation).collect();
         let turn_light = |frame: usize| {
-            // One plan for all frames: only the rotation of the light and of the view's sky changes.
+            // One plan for all frames: only the rotation of the light and of the views' sky changes.
             let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;
-            declared.view.set(self.view(settings, turn));
-            match (&declared.rotations, &self.environment) {
-                (Some(rotations), Some(map)) => {
-                    rotations.set(turn * map.rotation, &instances).map_err(Failure::work)
-                }
-                _ => Ok(()),
-            }
+            self.turn(&turning, settings, turn)
         };
         let cpu_milliseconds =
-            self.device.frames(&mut execution, &declared.imports, timing.as_mut(), frames, turn_light)?;
-        let pixels = self.size[0] as usize * self.size[1] as usize;
+            self.device.frames(&mut execution, &imports, timing.as_mut(), frames, turn_light)?;
+        let size = settings.picture_size();
+        let pixels = size[0] as usize * size[1] as usize;
         let linear: Vec<f32> = self.linear.read(0, 3 * pixels).map_err(Failure::work)?;
         let display: Vec<[u8; 4]> = self.display.read(0, pixels).map_err(Failure::work)?;
         Ok(Picture {
-            linear: view::picture(self.size, &linear),
+            linear: view::picture(size, &linear),
             display: display.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
             timing: timing.and_then(|timing| timing.summary()),
             cpu_milliseconds,

@@ -3,11 +3,10 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use airglow::relight::Orientation;
 use airglow_bake::cache::{CacheKey, Precision, Source, bake_cached};
 use airglow_bake::{LightFrame, Mesh, Occluder, Report, Settings, Threads, Transfer, unshadowed};
 use airglow_scene::{Instance, Quality, Scene, Shadow};
-use glam::Mat4;
+use glam::{DQuat, Mat4};
 use serde::Serialize;
 
 use super::holes;
@@ -30,8 +29,10 @@ pub struct SceneTransfer {
 pub struct InstanceTransfer {
     /// Index into [`SceneTransfer::transfers`].
     pub transfer: usize,
-    /// World from the space the transfer is in: the identity for a bake in world space.
-    pub orientation: Orientation,
+    /// World from the space the transfer is in, mirrored or not: the identity for a bake in world space.
+    pub rotation: DQuat,
+    /// Whether that space is mirrored through its origin before it is turned.
+    pub inverted: bool,
 }
 
 /// What a bake took.
@@ -74,6 +75,14 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
     Ok(result)
 }
 
+/// Vertices that [`of_scene`] would bake, and vertices of all instances.
+pub fn vertex_counts(scene: &Scene) -> [u64; 2] {
+    let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
+    let (jobs, _) = jobs(scene, scene.quality.shadow, &none);
+    let drawn = scene.instances.iter().map(|instance| scene.meshes[instance.mesh].positions.len() as u64);
+    [jobs.iter().map(|job| job.mesh.positions.len() as u64).sum(), drawn.sum()]
+}
+
 /// One job for each mesh that its instances can share in object space, and one for each other instance.
 fn jobs<'a>(
     scene: &'a Scene,
@@ -84,8 +93,8 @@ fn jobs<'a>(
     let mut shared: Vec<Option<usize>> = vec![None; scene.meshes.len()];
     let mut instances = Vec::with_capacity(scene.instances.len());
     for (number, instance) in scene.instances.iter().enumerate() {
-        let orientation = if shadow == Shadow::Scene { None } else { shared_orientation(instance) };
-        let transfer = match (orientation, shared[instance.mesh]) {
+        let frame = if shadow == Shadow::Scene { None } else { shared_frame(instance) };
+        let transfer = match (frame, shared[instance.mesh]) {
             (Some(_), Some(job)) => job,
             (Some(_), None) => {
                 jobs.push(object_job(scene, number, shadow, holes));
@@ -97,16 +106,17 @@ fn jobs<'a>(
                 jobs.len() - 1
             }
         };
-        instances.push(InstanceTransfer { transfer, orientation: orientation.unwrap_or(Orientation::IDENTITY) });
+        let (rotation, inverted) = frame.unwrap_or((DQuat::IDENTITY, false));
+        instances.push(InstanceTransfer { transfer, rotation, inverted });
     }
     (jobs, instances)
 }
 
 /// World from object, where that is a rotation, a mirroring and a uniform scale; a stretched instance is baked in
 /// world space instead.
-fn shared_orientation(instance: &Instance) -> Option<Orientation> {
+fn shared_frame(instance: &Instance) -> Option<(DQuat, bool)> {
     let frame = LightFrame::of_instance(instance.transform).ok()?;
-    Some(Orientation { rotation: frame.world_to_object.conjugate(), inverted: frame.inverted })
+    Some((frame.world_to_object.conjugate(), frame.inverted))
 }
 
 /// The mesh of an instance as the bake takes it.

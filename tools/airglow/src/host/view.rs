@@ -52,6 +52,19 @@ impl SharedView {
     }
 }
 
+/// Distance of neighbouring views, metres: that of a person's eyes.
+const EYES_APART: f32 = 0.064;
+
+/// The same camera `count` times, side by side along its right, around where it stands: two make a stereo pair.
+pub fn row(camera: &Camera, count: u32) -> Vec<Camera> {
+    let middle = 0.5 * (count as f32 - 1.0);
+    let moved = |index: u32| {
+        let right = EYES_APART * (index as f32 - middle);
+        Camera { transform: camera.transform * Mat4::from_translation(right * Vec3::X), ..camera.clone() }
+    };
+    (0..count).map(moved).collect()
+}
+
 /// `aspect` of a picture.
 pub fn aspect(size: [u32; 2]) -> f32 {
     size[0] as f32 / size[1].max(1) as f32
@@ -67,6 +80,18 @@ pub fn picture(size: [u32; 2], values: &[f32]) -> FloatImage {
 mod tests {
     use super::*;
     use airglow_scene::{Projection, Sphere};
+
+    #[test]
+    fn views_stand_in_a_row_around_the_camera() {
+        let camera = Camera::framing(Sphere { center: [1.0, 2.0, 3.0], radius: 1.5 });
+        assert_eq!(row(&camera, 1), std::slice::from_ref(&camera));
+        let pair = row(&camera, 2);
+        let (apart, right) = (pair[1].position() - pair[0].position(), camera.transform.x_axis.truncate());
+        assert!((apart - 0.064 * right).length() < 1e-5, "{apart} apart, right is {right}");
+        let middle = 0.5 * (pair[0].position() + pair[1].position());
+        assert!((middle - camera.position()).length() < 1e-5, "{middle} {}", camera.position());
+        assert!(pair.iter().all(|eye| eye.direction() == camera.direction()));
+    }
 
     #[test]
     fn the_middle_of_the_picture_looks_where_the_camera_looks() {
