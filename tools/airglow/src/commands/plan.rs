@@ -19,6 +19,7 @@ use crate::output::Output;
 #[command(after_help = "Examples:
   airglow plan assets/scenes/spot.toml
   airglow plan assets/scenes/spot.toml --as mermaid > plan.mmd
+  airglow plan assets/scenes/spot.toml --check             have its barriers replayed
   airglow plan assets/scenes/spot.toml --without relight --measure      what it would take
   airglow plan assets/mesh/spot.glb          no environment: relighting is left out, and the plan says so")]
 pub struct Arguments {
@@ -33,6 +34,9 @@ pub struct Arguments {
     /// Measure the time that leaving it out saves: it is baked and drawn with for a few frames, and dropped again.
     #[arg(long, requires = "without")]
     measure: bool,
+    /// Replay every barrier over every subresource by a checker that shares no code with the compiler.
+    #[arg(long)]
+    check: bool,
     /// Views of the frame.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     views: u32,
@@ -73,6 +77,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
         renderer.say_relight_takes(seconds);
         let plan = renderer.plan(&settings)?;
+        if arguments.check {
+            let report = airglow_checker::check(&plan).map_err(Failure::check)?;
+            output.say(report.to_string().trim_end());
+        }
         let form = if output.json() { Form::Json } else { arguments.form };
         Ok(match form {
             Form::Text => plan.text(),
