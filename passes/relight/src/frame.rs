@@ -101,7 +101,8 @@ pub struct Relit<B> {
     pub results: Option<B>,
     /// Where those of each instance lie.
     pub ranges: Vec<ResultRange>,
-    /// The environment's coefficients in its own frame, `vec4[order^2]`, for other passes.
+    /// The environment's coefficients in its own frame, `vec4[order^2]`, for the vertex, fragment and compute shaders
+    /// of other passes.
     pub environment: Option<B>,
     /// Turns light and instances before the plan is recorded again; none for light of each vertex.
     pub rotations: Option<Rotations>,

@@ -3,6 +3,7 @@
 //! A test reflects each module and compares it with what stands here.
 
 mod modules;
+mod source;
 
 use airglow_gpu::{BindingDesc, BindingKind};
 use airglow_graph::Access;
@@ -13,6 +14,8 @@ use modules::{
 };
 
 use crate::settings::{LightKind, Output, Settings, Storage};
+
+pub(crate) use source::Source;
 
 /// Invocations of a workgroup of the kernels that run over vertices; README.md has the measurement.
 pub const WORKGROUP: u32 = 64;
@@ -58,49 +61,6 @@ impl Kernel {
 /// Little-endian words of a module's bytes.
 pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
-}
-
-/// Which vectors of a vertex a kernel reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Source {
-    /// Only the baked ones.
-    Baked,
-    /// Only the dynamic visibility.
-    Dynamic,
-    /// Both.
-    Both,
-    /// Transfer of the current normals.
-    Normals,
-    /// Transfer of the current normals, and the dynamic visibility.
-    ShadowedNormals,
-    /// None: nothing blocks the incident radiance.
-    Open,
-}
-
-impl Source {
-    /// Those that instances may have under these settings.
-    pub(crate) fn all(settings: &Settings) -> Vec<Self> {
-        let (colour, shadows) = (settings.output == Output::Colour, settings.visibility);
-        let possible = [
-            (Self::Baked, true),
-            (Self::Both, shadows),
-            (Self::Dynamic, !colour && shadows),
-            (Self::Open, !colour),
-            (Self::Normals, settings.normals),
-            (Self::ShadowedNormals, settings.normals && shadows),
-        ];
-        possible.into_iter().filter_map(|(source, possible)| possible.then_some(source)).collect()
-    }
-
-    /// Whether transfer is made from normals.
-    pub(crate) fn has_normals(self) -> bool {
-        matches!(self, Self::Normals | Self::ShadowedNormals)
-    }
-
-    /// Whether there is dynamic visibility.
-    pub(crate) fn is_shadowed(self) -> bool {
-        matches!(self, Self::Dynamic | Self::Both | Self::ShadowedNormals)
-    }
 }
 
 const fn storage(binding: u32, access: Access) -> Binding {

@@ -16,10 +16,13 @@ use crate::settings::{LightKind, Method, Output};
 use crate::stage::{Need, Pair, Prepared, Resource, Work};
 use crate::tables::map_frame;
 
-/// The environment's light between frames: any shader of the host's may read it.
+/// The environment's light between frames: any vertex, fragment or compute shader may read it.
 fn read_anywhere() -> State {
     let access = AccessFlags2::SHADER_STORAGE_READ | AccessFlags2::UNIFORM_READ;
-    State { stage: PipelineStageFlags2::ALL_COMMANDS, access, ..State::UNDEFINED }
+    let stage = PipelineStageFlags2::VERTEX_SHADER
+        | PipelineStageFlags2::FRAGMENT_SHADER
+        | PipelineStageFlags2::COMPUTE_SHADER;
+    State { stage, access, ..State::UNDEFINED }
 }
 
 impl Relight {

@@ -1,10 +1,11 @@
-//! Extreme meshes: one vertex, two million, every ray blocked, the first and the last order.
+//! Extreme meshes: one vertex, two million, every ray blocked, the first and the last order; normals of all lengths.
 
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
 use super::{Outcome, coefficients};
 use crate::bench::{Bench, Case, CaseLight};
 use crate::relight::Relight;
+use crate::rotation::Orientation;
 use crate::settings::{Settings, Storage};
 use crate::{RelightError, reference};
 
@@ -20,6 +21,7 @@ pub(super) fn cases(bench: &Bench<'_>, large: bool) -> Result<Vec<Outcome>, Reli
         mesh(bench, "the highest order", f32(6), 1000, false)?,
         mesh(bench, "the highest order", f16(6), 1000, false)?,
     ];
+    outcomes.push(normals(bench)?);
     if large {
         outcomes.push(mesh(bench, "two million vertices in chunks", f16(6), 2_000_000, false)?);
     }
@@ -46,22 +48,8 @@ fn mesh(
     let mesh = relight.add_mesh(bench.context, name, vertices, Some(&vectors))?;
     let light = CaseLight::Uniform(&light, turn);
     let colours = bench.results(&mut relight, &Case::new(light, mesh))?;
-    let light_length = super::length(turned.as_flattened());
-    let (mut worst, mut result, mut truth) = (-1.0, [0.0; 3], [0.0; 3]);
-    for (vector, colour) in vectors.chunks_exact(count).zip(colours.chunks_exact(4)) {
-        let vector: Vec<f64> = vector.iter().map(|t| f64::from(*t)).collect();
-        let expected = reference::colour(&vector, &turned);
-        let scale = if blocked { 1.0 } else { super::length(&vector) * light_length };
-        for (actual, expected_channel) in colour.iter().zip(expected) {
-            let error = (f64::from(*actual) - expected_channel).abs() / scale;
-            // A NaN is worse than anything.
-            if error.is_nan() || error > worst {
-                worst = if error.is_nan() { f64::INFINITY } else { error };
-                result = [0, 1, 2].map(|i| f64::from(colour[i]));
-                truth = expected;
-            }
-        }
-    }
+    let vectors = vectors.chunks_exact(count).map(|vector| vector.iter().map(|t| f64::from(*t)).collect());
+    let (worst, result, truth) = worst(vectors, &turned, &colours);
     let bound = match (blocked, settings.storage) {
         (true, _) => 0.0,
         (false, Storage::F32) => 1e-5,
@@ -76,4 +64,62 @@ fn mesh(
         bound,
         reproduce: "airglow stability relight".to_owned(),
     })
+}
+
+/// Transfer from normals of length 1e-30 to 1e30 in a mirrored instance, and from a zero normal.
+fn normals(bench: &Bench<'_>) -> Result<Outcome, RelightError> {
+    let settings = Settings { order: 6, normals: true, ..Settings::default() };
+    let direction = |i: i32| DVec3::new(0.1 * f64::from(i), 1.0, -0.7).normalize();
+    let length = |i: i32| if i == 0 { 0.0 } else { 10f64.powi(i) };
+    let normals: Vec<[f32; 3]> =
+        (-30..=30).map(|i| (direction(i) * length(i)).as_vec3().to_array()).collect();
+    let light: Vec<[f32; 3]> = coefficients(6).into_iter().map(|l| [l as f32, 1.0, 0.5]).collect();
+    let wide: Vec<[f64; 3]> = light.iter().map(|rgb| rgb.map(f64::from)).collect();
+    let turn = DQuat::from_xyzw(0.1, -0.7, 0.5, 0.5);
+    let orientation = Orientation { rotation: DQuat::from_rotation_z(2.0), inverted: true };
+    let turned = reference::light(6, &wide, turn, orientation)?;
+    let mut relight = Relight::new(bench.context, settings)?;
+    let mesh = relight.add_mesh(bench.context, "normals", normals.len() as u32, None)?;
+    let light = CaseLight::Uniform(&light, turn);
+    let case = Case { orientation, normals: Some(&normals), ..Case::new(light, mesh) };
+    let colours = bench.results(&mut relight, &case)?;
+    let vectors = normals.iter().map(|n| reference::unshadowed(6, DVec3::from_array(n.map(f64::from))));
+    let (error, result, truth) =
+        worst(vectors.collect::<Result<Vec<_>, _>>()?.into_iter(), &turned, &colours);
+    Ok(Outcome {
+        name: "normals: of length 1e-30 to 1e30, and zero, order 6".to_owned(),
+        input: format!("{} vertices of a mirrored instance", normals.len()),
+        result: format!("{result:?} at the worst vertex"),
+        truth: format!("{truth:?}"),
+        error,
+        bound: 1e-5,
+        reproduce: "airglow stability relight".to_owned(),
+    })
+}
+
+/// The error |error| / (|t| |l|) of the worst vertex, its colour and the truth; the colour itself where t is zero.
+fn worst(
+    vectors: impl Iterator<Item = Vec<f64>>,
+    light: &[[f64; 3]],
+    colours: &[f32],
+) -> (f64, [f64; 3], [f64; 3]) {
+    let light_length = super::length(light.as_flattened());
+    let (mut worst, mut result, mut truth) = (-1.0, [0.0; 3], [0.0; 3]);
+    for (vector, colour) in vectors.zip(colours.chunks_exact(4)) {
+        let expected = reference::colour(&vector, light);
+        let scale = match super::length(&vector) * light_length {
+            0.0 => 1.0,
+            scale => scale,
+        };
+        for (actual, expected_channel) in colour.iter().zip(expected) {
+            let error = (f64::from(*actual) - expected_channel).abs() / scale;
+            // A NaN is worse than anything.
+            if error.is_nan() || error > worst {
+                worst = if error.is_nan() { f64::INFINITY } else { error };
+                result = [0, 1, 2].map(|i| f64::from(colour[i]));
+                truth = expected;
+            }
+        }
+    }
+    (worst, result, truth)
 }
