@@ -1,6 +1,6 @@
 //! On the device: every setting of the sweep against the f64 reference, by both roads.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
 use std::sync::Arc;
 use std::sync::Mutex;

@@ -1,6 +1,6 @@
 //! What stands in the plan, and that what is stated in Rust is what the shader has. Without a device.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
 use std::path::Path;
 
