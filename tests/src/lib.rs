@@ -2,6 +2,7 @@
 #![expect(clippy::panic, reason = "helpers of tests fail the test they are called from")]
 
 pub mod compare;
+pub mod conformance;
 pub mod data;
 pub mod device;
 pub mod golden;

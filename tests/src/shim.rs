@@ -24,6 +24,37 @@ pub struct Call {
     pub images: Vec<vk::ImageMemoryBarrier2<'static>>,
 }
 
+/// Commands that set state which outlives them, as `engine/gpu/README.md` lists them; all others act at once.
+pub const STATE: [&str; 7] = [
+    "vkCmdBindPipeline",
+    "vkCmdBindDescriptorSets",
+    "vkCmdPushConstants",
+    "vkCmdBindVertexBuffers",
+    "vkCmdBindIndexBuffer",
+    "vkCmdSetViewport",
+    "vkCmdSetScissor",
+];
+/// Commands that act at once and leave no state.
+pub const ACTIONS: [&str; 17] = [
+    "vkCmdBeginRendering",
+    "vkCmdEndRendering",
+    "vkCmdBeginDebugUtilsLabelEXT",
+    "vkCmdEndDebugUtilsLabelEXT",
+    "vkCmdCopyBuffer",
+    "vkCmdCopyBufferToImage",
+    "vkCmdCopyImageToBuffer",
+    "vkCmdDispatch",
+    "vkCmdDispatchIndirect",
+    "vkCmdDraw",
+    "vkCmdDrawIndexed",
+    "vkCmdDrawIndexedIndirect",
+    "vkCmdDrawIndirect",
+    "vkCmdFillBuffer",
+    "vkCmdPipelineBarrier2",
+    "vkCmdResetQueryPool",
+    "vkCmdWriteTimestamp2",
+];
+
 /// What the watch knows.
 #[derive(Default)]
 struct Watch {
@@ -94,10 +125,15 @@ pub struct Shim {
 impl Shim {
     /// Watches `device` for as long as it lives; waits for its turn.
     pub fn new(device: &OpenDevice) -> Self {
+        Self::watching(device, device.device().handle())
+    }
+
+    /// Watches `device`, made on the instance of `open` by a host of its own.
+    pub fn watching(open: &OpenDevice, device: vk::Device) -> Self {
         let turn = lock(&TURN);
-        let get = device.instance().fp_v1_0().get_device_proc_addr;
-        let get_instance = device.entry().static_fn().get_instance_proc_addr;
-        let (instance, device) = (device.instance().handle(), device.device().handle());
+        let get = open.instance().fp_v1_0().get_device_proc_addr;
+        let get_instance = open.entry().static_fn().get_instance_proc_addr;
+        let instance = open.instance().handle();
         let mut real = BTreeMap::new();
         for (name, c_name) in table::names() {
             // SAFETY: live handles with their own functions.

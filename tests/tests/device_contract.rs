@@ -72,6 +72,56 @@ unsafe extern "system" fn without_dispatch_indirect(
     }
 }
 
+/// A host's get-proc-addr on a device of Vulkan 1.2: only the extensions' names for what 1.3 made core.
+unsafe extern "system" fn extension_names_only(
+    device: vk::Device,
+    name: *const c_char,
+) -> vk::PFN_vkVoidFunction {
+    const PROMOTED: [(&CStr, &CStr); 4] = [
+        (c"vkCmdBeginRendering", c"vkCmdBeginRenderingKHR"),
+        (c"vkCmdEndRendering", c"vkCmdEndRenderingKHR"),
+        (c"vkCmdPipelineBarrier2", c"vkCmdPipelineBarrier2KHR"),
+        (c"vkCmdWriteTimestamp2", c"vkCmdWriteTimestamp2KHR"),
+    ];
+    let get = DEVICE_PROC_ADDR.get()?;
+    // SAFETY: the library passes the device and a nul-terminated name.
+    unsafe {
+        let asked = CStr::from_ptr(name);
+        match PROMOTED.iter().find(|(core, extension)| [*core, *extension].contains(&asked)) {
+            Some((core, _)) if *core == asked => None,
+            Some((core, _)) => get(device, core.as_ptr()),
+            None => get(device, name),
+        }
+    }
+}
+
+#[test]
+fn functions_are_found_by_the_names_of_their_extensions() {
+    let device = open(&Requirements::engine());
+    DEVICE_PROC_ADDR.get_or_init(|| device.instance().fp_v1_0().get_device_proc_addr);
+    for (api_version, named) in [(vk::API_VERSION_1_2, true), (vk::API_VERSION_1_3, false)] {
+        let mut extensions = Vec::new();
+        let info = device.adopt_info(&mut extensions, 2);
+        let mut names = info.extensions.to_vec();
+        if named {
+            names.extend(["VK_KHR_synchronization2", "VK_KHR_dynamic_rendering"]);
+        }
+        let get_device_proc_addr = Some(extension_names_only as vk::PFN_vkGetDeviceProcAddr);
+        let info = AdoptInfo { api_version, extensions: &names, get_device_proc_addr, ..info };
+        // SAFETY: the handles are the open device's; everything is dropped before it, after `run` has waited.
+        let context = unsafe { Context::adopt(info) }.unwrap();
+        let (pipeline, buffer) = (colours_pipeline(&context), storage(&context, "test", BYTES));
+        let copy = device.run(&context, |recorder| {
+            record_colours(recorder, &pipeline, &buffer, 1.0)?;
+            recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
+            recorder.read_back_buffer(&buffer)
+        });
+        let colours = copy.unwrap().read::<f32>().unwrap();
+        assert_eq!(colours[4 * 128..][..2], [0.5, 0.5], "the barriers and the dispatch ran");
+    }
+    assert!(device.messages().take().is_empty());
+}
+
 #[test]
 fn adopting_names_what_is_missing() {
     let device = open(&Requirements::engine());
@@ -111,7 +161,7 @@ fn adopting_names_what_is_missing() {
     let message = error(adopt(&|info| info.frames_in_flight = 0));
     assert!(message.contains("frames_in_flight"), "{message}");
 
-    DEVICE_PROC_ADDR.set(device.instance().fp_v1_0().get_device_proc_addr).unwrap();
+    DEVICE_PROC_ADDR.get_or_init(|| device.instance().fp_v1_0().get_device_proc_addr);
     let message = error(adopt(&|info| info.get_device_proc_addr = Some(without_dispatch_indirect)));
     assert!(message.contains("returned null for vkCmdDispatchIndirect"), "{message}");
     assert!(device.messages().take().is_empty(), "adopting and refusing leaves validation silent");

@@ -1,0 +1,199 @@
+//! This room inside a host with a device of its own, by both roads; on lesser devices; with narrow vectors.
+
+#![expect(clippy::panic, reason = "helpers fail the test they are called from")]
+
+mod host;
+
+use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
+use airglow_gpu::requirements::Limit;
+use airglow_gpu::{
+    Buffer, Context, DeviceMask, Imports, Label, Location, Options, Record, Recorder, Requirements,
+};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, ResourceDesc};
+use airglow_relight::{
+    Bindings, Environment, Frame, Instance, Light, MeshId, Method, Need, Prepared, Relight, Resource,
+    Settings,
+};
+use airglow_tests::compare::assert_close;
+use airglow_tests::conformance::{Content, Given, HostResource, Named, Refusal, Room, conform};
+use glam::DQuat;
+use host::Numbers;
+use std::process::Command;
+
+const WIDTH: u32 = 32;
+const HEIGHT: u32 = 16;
+/// Chunks of a small range do not divide it.
+const VERTICES: u32 = 1500;
+
+/// Relighting between a host's sky and a host's vertex buffer.
+struct Relit {
+    relight: Relight,
+    mesh: MeshId,
+    prepared: Option<(Prepared, Bindings, Vec<Buffer>)>,
+}
+
+impl Relit {
+    fn new(context: &Context, settings: Settings) -> Self {
+        let mut relight = Relight::new(context, settings).expect("the settings are sound");
+        let vectors = Numbers::new(3).values(VERTICES as usize * settings.coefficients());
+        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors)).expect("the mesh is sound");
+        Self { relight, mesh, prepared: None }
+    }
+
+    fn frame<B, I>(&self, image: I, target: B) -> Frame<B, I> {
+        let rotation = DQuat::from_rotation_y(0.7);
+        let environment = Environment { image, width: WIDTH, height: HEIGHT, revision: 1, rotation };
+        Frame {
+            light: Light::Environment(environment),
+            instances: vec![Instance::new(self.mesh)],
+            target: Some(target),
+        }
+    }
+}
+
+impl Room for Relit {
+    fn requirements(&self) -> Requirements {
+        Relight::requirements(self.relight.settings())
+    }
+
+    fn resources(&self) -> Vec<HostResource> {
+        let usage = ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST;
+        let sky = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
+        let texels = Numbers::new(4).rgb((WIDTH * HEIGHT) as usize);
+        let texels = texels.into_iter().flat_map(|[r, g, b]| [r + 1.0, g + 1.0, b + 1.0, 1.0]);
+        let texels = texels.flat_map(f32::to_le_bytes).collect();
+        let usage = BufferUsageFlags::STORAGE_BUFFER
+            | BufferUsageFlags::VERTEX_BUFFER
+            | BufferUsageFlags::TRANSFER_SRC
+            | BufferUsageFlags::TRANSFER_DST;
+        let results = BufferDesc { size: 16 * u64::from(VERTICES), usage };
+        vec![
+            HostResource {
+                name: "sky",
+                content: Content::Image(sky, texels),
+                entry: Access::FragmentSampled.into(),
+                exit: Access::FragmentSampled.into(),
+            },
+            HostResource {
+                name: "vertex colours",
+                content: Content::Buffer(results, vec![0xff; 16 * VERTICES as usize]),
+                entry: Access::ComputeStorageReadWrite.into(),
+                exit: Access::VertexBuffer.into(),
+            },
+        ]
+    }
+
+    fn add(
+        &mut self,
+        context: &Context,
+        graph: &mut Graph<Record>,
+        imports: &mut Imports,
+        host: &[Named],
+    ) -> Result<(), Refusal> {
+        let [Named::Image(sky), Named::Buffer(results)] = host else { return Err("other resources".into()) };
+        let frame = self.frame(*sky, *results);
+        self.relight.add(context, graph, imports, &frame)?;
+        Ok(())
+    }
+
+    fn accesses(&mut self, context: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
+        let frame = self.frame((), ());
+        let prepared = self.relight.prepare(context, &frame)?;
+        let (mut bindings, mut scratch) = (Bindings::default(), Vec::new());
+        for (resource, need) in &prepared.needs {
+            let label = Label::new("host", "scratch");
+            match need {
+                Need::Scratch(ResourceDesc::Buffer(desc)) => {
+                    let usage =
+                        desc.usage | BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::UNIFORM_BUFFER;
+                    let desc = BufferDesc { usage, ..*desc };
+                    let buffer = context.create_buffer(label, &desc, Location::Device)?;
+                    bindings.buffers.insert(*resource, (&buffer).into());
+                    scratch.push(buffer);
+                }
+                Need::Scratch(ResourceDesc::Image(desc)) => {
+                    let usage = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
+                    let image = context.create_image(label, &ImageDesc { usage, ..*desc })?;
+                    bindings.images.insert(*resource, image.full_view()?);
+                }
+                Need::Ours { .. } | Need::Host => {}
+            }
+        }
+        let accesses = prepared.accesses();
+        let ends = |wanted| {
+            let (_, all) = accesses.iter().find(|(resource, _)| *resource == wanted)?;
+            Some((*all.first()?, *all.last()?))
+        };
+        let ends = vec![ends(Resource::Environment), ends(Resource::Results)];
+        self.prepared = Some((prepared, bindings, scratch));
+        Ok(ends)
+    }
+
+    fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
+        let (Some((prepared, bindings, _)), [Given::Image(sky), Given::Buffer(results)]) =
+            (&mut self.prepared, host)
+        else {
+            return Err("other resources".into());
+        };
+        bindings.images.insert(Resource::Environment, sky.full_view()?);
+        bindings.buffers.insert(Resource::Results, results.into());
+        Ok(prepared.record(recorder, bindings)?)
+    }
+}
+
+/// The colours by both roads, as values.
+fn colours(settings: Settings, options: &Options) -> Vec<f32> {
+    let outputs =
+        conform(|context| Relit::new(context, settings), &Relight::requirements(&settings), options);
+    let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    outputs[0].chunks_exact(4).map(value).collect()
+}
+
+#[test]
+fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads() {
+    let [by_compute, by_fragment] = [Method::Compute, Method::Fragment]
+        .map(|method| colours(Settings { method, ..Settings::default() }, &Options::default()));
+    assert!(by_compute.chunks_exact(4).all(|colour| colour[3] == 1.0), "every vertex was written");
+    assert_eq!(by_compute, by_fragment);
+}
+
+#[test]
+fn a_lesser_device_gets_the_same_bits() {
+    let settings = Settings::default();
+    let whole = colours(settings, &Options::default());
+    // 64 bytes a vertex: three chunks, each within the range, which the recorder checks at every binding.
+    let limits = vec![(Limit::StorageBufferRange, 32 << 10)];
+    let mask = DeviceMask { limits, without_optional_features: true };
+    assert_eq!(colours(settings, &Options { mask, ..Options::default() }), whole);
+}
+
+/// Set in the process that [`narrow_vectors_stay_within_rounding`] starts.
+const NARROW: &str = "AIRGLOW_TEST_NARROW";
+
+#[test]
+fn narrow_vectors_stay_within_rounding() {
+    let values = colours(Settings::default(), &Options::default());
+    if std::env::var_os(NARROW).is_some() {
+        let bits: Vec<_> = values.iter().map(|value| format!("{:08x}", value.to_bits())).collect();
+        println!("bits {}", bits.join(" "));
+        return;
+    }
+    // llvmpipe reads its width once: subgroups of 4 need a process of their own.
+    let program = std::env::current_exe().expect("this test is a program");
+    let output = Command::new(program)
+        .args(["--exact", "narrow_vectors_stay_within_rounding", "--nocapture"])
+        .env(NARROW, "1")
+        .env("LP_NATIVE_VECTOR_WIDTH", "128")
+        .output()
+        .expect("the program runs again");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let line = text.lines().find_map(|line| line.split_once("bits ")).map(|(_, bits)| bits);
+    let line = line.unwrap_or_else(|| panic!("{text}\n{}", String::from_utf8_lossy(&output.stderr)));
+    let narrow: Vec<f32> = line
+        .split(' ')
+        .map(|word| f32::from_bits(u32::from_str_radix(word, 16).expect("hexadecimal")))
+        .collect();
+    assert_close("subgroups of 4", &narrow, &values, 1e-5, 1e-5);
+    let same = narrow.iter().zip(&values).filter(|(a, b)| a.to_bits() == b.to_bits()).count();
+    println!("{same} of {} values have the same bits", values.len());
+}

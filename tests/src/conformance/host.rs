@@ -1,0 +1,221 @@
+//! The host: its device, its memory, its submission.
+
+use super::roads::{by_graph, by_record, fill, read_back};
+use super::{Content, Given, HostResource, Outputs, Road, Room, layout_after};
+use crate::device::open;
+use crate::shim::{Call, Shim};
+use airglow_gpu::ash::{self, vk};
+use airglow_gpu::open::OpenDevice;
+use airglow_gpu::{
+    AdoptInfo, Context, FeatureSet, FeatureStorage, GpuError, Label, Options, Readback, Recorder,
+    Requirements, patch_features,
+};
+use std::ffi::c_void;
+
+/// A host with a device of its own on the test device's instance, whose validation hears all devices.
+pub struct Host {
+    open: OpenDevice,
+    device: ash::Device,
+    pool: vk::CommandPool,
+    features: FeatureSet,
+    requirements: Requirements,
+}
+
+/// A resource that the host made, with its memory.
+struct Made {
+    given: Given,
+    memory: vk::DeviceMemory,
+}
+
+/// The same without what the library knows of it.
+enum Raw {
+    Image(vk::Image),
+    Buffer(vk::Buffer),
+}
+
+impl Made {
+    fn into_own(self) -> (Raw, vk::DeviceMemory) {
+        let raw = match self.given {
+            Given::Image(image) => Raw::Image(image.raw()),
+            Given::Buffer(buffer) => Raw::Buffer(buffer.raw()),
+        };
+        (raw, self.memory)
+    }
+}
+
+impl Host {
+    /// Makes the device: the host chains what it wants itself, and has the room's features patched in.
+    pub fn new(requirements: &Requirements) -> Self {
+        let open = open(requirements);
+        let requirements = Requirements::engine().and(requirements);
+        let instance = open.instance();
+        let mut own =
+            vk::PhysicalDeviceVulkan12Features { timeline_semaphore: vk::TRUE, ..Default::default() };
+        let mut chain: *mut c_void = (&raw mut own).cast();
+        let mut core = vk::PhysicalDeviceFeatures::default();
+        let mut storage = FeatureStorage::default();
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(open.queue_family())
+            .queue_priorities(&[1.0])];
+        // SAFETY: live handles; the chain is valid and outlived by its storage; what is enabled is supported.
+        let (device, pool, features) = unsafe {
+            let supported = FeatureSet::supported(instance, open.physical_device());
+            let wanted = requirements.features_to_enable(supported);
+            patch_features(&mut chain, Some(&mut core), wanted, vk::API_VERSION_1_3, &mut storage)
+                .expect("a plain chain");
+            let features = FeatureSet::of_chain(chain, Some(&core));
+            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&core);
+            let info = vk::DeviceCreateInfo { p_next: chain, ..info };
+            let device =
+                instance.create_device(open.physical_device(), &info, None).expect("a second device");
+            let info = vk::CommandPoolCreateInfo::default().queue_family_index(open.queue_family());
+            let pool = device.create_command_pool(&info, None).expect("a command pool");
+            (device, pool, features)
+        };
+        assert_eq!(own.timeline_semaphore, vk::TRUE, "what the host wanted stays");
+        Self { open, device, pool, features, requirements }
+    }
+
+    /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
+    pub(super) fn run<R: Room>(
+        &self,
+        make: impl Fn(&Context) -> R,
+        options: &Options,
+        road: Road,
+    ) -> (Outputs, Vec<Call>) {
+        let handle = self.device.handle();
+        let shim = Shim::watching(&self.open, handle);
+        let info = AdoptInfo {
+            get_instance_proc_addr: self.open.entry().static_fn().get_instance_proc_addr,
+            get_device_proc_addr: Some(shim.get_device_proc_addr()),
+            instance: self.open.instance().handle(),
+            api_version: vk::API_VERSION_1_3,
+            physical_device: self.open.physical_device(),
+            device: handle,
+            queue_family: self.open.queue_family(),
+            features: self.features,
+            extensions: &["VK_EXT_debug_utils"],
+            requirements: &self.requirements,
+            allocator: None,
+            pipeline_cache: vk::PipelineCache::null(),
+            frames_in_flight: 1,
+            options: options.clone(),
+        };
+        // SAFETY: handles of this host; all that is made from the context is dropped below, after waiting.
+        let context = unsafe { Context::adopt(info) }.unwrap_or_else(|error| panic!("{error}"));
+        let mut room = make(&context);
+        let resources = room.resources();
+        let made: Vec<_> = resources.iter().map(|resource| self.make(&context, resource)).collect();
+        let given: Vec<_> = made.iter().map(|made| made.given.clone()).collect();
+        let (mut calls, mut execution) = (Vec::new(), None);
+        let copies = self.frame(&context, |recorder| {
+            for (resource, given) in resources.iter().zip(&given) {
+                fill(recorder, resource, given, resource.entry)?;
+            }
+            shim.take_calls();
+            match road {
+                Road::Graph => execution = Some(by_graph(&mut room, recorder, &resources, &given)),
+                Road::Record => by_record(&mut room, recorder, &resources, &given, &shim, &mut calls),
+            }
+            if road == Road::Graph {
+                calls = shim.take_calls();
+                for (resource, given) in resources.iter().zip(&given) {
+                    let Given::Image(image) = given else { continue };
+                    let layout = layout_after(&calls, image.raw(), resource.entry.layout);
+                    assert_eq!(layout, resource.exit.layout, "{} on exit", resource.name);
+                }
+            }
+            read_back(recorder, &resources, &given)
+        });
+        let outputs = copies.iter().map(|copy| copy.read::<u8>().unwrap_or_default()).collect();
+        let own: Vec<_> = made.into_iter().map(Made::into_own).collect();
+        drop((copies, execution, room, given, context));
+        own.into_iter().for_each(|own| self.destroy(own));
+        assert!(shim.alive().is_empty(), "{road:?} left alive: {:?}", shim.alive());
+        (outputs, calls)
+    }
+
+    /// Records, submits and waits.
+    fn frame(
+        &self,
+        context: &Context,
+        record: impl FnOnce(&mut Recorder<'_>) -> Result<Vec<Readback>, GpuError>,
+    ) -> Vec<Readback> {
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+        // SAFETY: handles of this host; the command buffer is recorded, submitted once and waited for here.
+        unsafe {
+            let commands = self.device.allocate_command_buffers(&info).expect("a command buffer");
+            self.device.begin_command_buffer(commands[0], &Default::default()).expect("recording");
+            let copies =
+                record(&mut Recorder::new(context, commands[0])).unwrap_or_else(|error| panic!("{error}"));
+            self.device.end_command_buffer(commands[0]).expect("a complete command buffer");
+            let queue = self.device.get_device_queue(self.open.queue_family(), 0);
+            let submit = vk::SubmitInfo::default().command_buffers(&commands);
+            self.device.queue_submit(queue, &[submit], vk::Fence::null()).expect("submission");
+            self.device.device_wait_idle().expect("the frame's end");
+            copies
+        }
+    }
+
+    /// Makes a resource with memory of its own.
+    fn make(&self, context: &Context, resource: &HostResource) -> Made {
+        let label = Label::new("host", resource.name);
+        let allocate = |requirements: vk::MemoryRequirements| {
+            let info = vk::MemoryAllocateInfo::default()
+                .allocation_size(requirements.size)
+                .memory_type_index(requirements.memory_type_bits.trailing_zeros());
+            // SAFETY: a live device and an allowed memory type.
+            unsafe { self.device.allocate_memory(&info, None) }.expect("memory")
+        };
+        // SAFETY: a live device and complete descriptions; what is imported is destroyed after the context's clones.
+        unsafe {
+            match &resource.content {
+                Content::Image(desc, _) => {
+                    let info = vk::ImageCreateInfo::default()
+                        .image_type(vk::ImageType::TYPE_2D)
+                        .format(desc.format)
+                        .extent(vk::Extent3D { width: desc.extent[0], height: desc.extent[1], depth: 1 })
+                        .mip_levels(desc.mips)
+                        .array_layers(desc.layers)
+                        .samples(desc.samples)
+                        .usage(desc.usage);
+                    let raw = self.device.create_image(&info, None).expect("an image");
+                    let memory = allocate(self.device.get_image_memory_requirements(raw));
+                    self.device.bind_image_memory(raw, memory, 0).expect("bound memory");
+                    Made { given: Given::Image(context.import_image(raw, label, desc)), memory }
+                }
+                Content::Buffer(desc, _) => {
+                    let info = vk::BufferCreateInfo::default().size(desc.size).usage(desc.usage);
+                    let raw = self.device.create_buffer(&info, None).expect("a buffer");
+                    let memory = allocate(self.device.get_buffer_memory_requirements(raw));
+                    self.device.bind_buffer_memory(raw, memory, 0).expect("bound memory");
+                    Made { given: Given::Buffer(context.import_buffer(raw, label, desc)), memory }
+                }
+            }
+        }
+    }
+
+    fn destroy(&self, (raw, memory): (Raw, vk::DeviceMemory)) {
+        // SAFETY: the device is idle, and nothing of the library refers to the resource any more.
+        unsafe {
+            match raw {
+                Raw::Image(image) => self.device.destroy_image(image, None),
+                Raw::Buffer(buffer) => self.device.destroy_buffer(buffer, None),
+            }
+            self.device.free_memory(memory, None);
+        }
+    }
+
+    /// Destroys the device and asserts that validation said nothing.
+    pub(super) fn finish(self) {
+        let messages = self.open.messages();
+        // SAFETY: the device is idle, and everything made on it is gone.
+        unsafe {
+            self.device.destroy_command_pool(self.pool, None);
+            self.device.destroy_device(None);
+        }
+        drop(self.open);
+        let said: Vec<_> = messages.take().iter().map(ToString::to_string).collect();
+        assert!(said.is_empty(), "validation said:\n{}", said.join("\n"));
+    }
+}

@@ -1,0 +1,124 @@
+//! What is recorded around a room and by it: the host's own commands, our plan, or the host's own frame graph.
+
+use super::{Content, Given, HostResource, Named, Room};
+use crate::plan::compile;
+use crate::shim::{Call, Shim};
+use airglow_gpu::ash::vk;
+use airglow_gpu::{Execution, GpuError, Imports, Readback, Record, Recorder};
+use airglow_graph::{Access, Graph, State};
+
+/// The host's own commands before the room: contents, then the state handed over.
+pub(super) fn fill(
+    recorder: &mut Recorder<'_>,
+    resource: &HostResource,
+    given: &Given,
+    entry: State,
+) -> Result<(), GpuError> {
+    match (&resource.content, given) {
+        (Content::Image(_, texels), Given::Image(image)) => {
+            let source = recorder.upload(texels)?;
+            recorder.transition(image, State::UNDEFINED, Access::TransferDestination)?;
+            recorder.copy_buffer_to_image(&source, &image.full_view()?)?;
+            recorder.transition(image, Access::TransferDestination, entry)
+        }
+        (Content::Buffer(_, bytes), Given::Buffer(buffer)) if !bytes.is_empty() => {
+            let source = recorder.upload(bytes)?;
+            recorder.copy_buffer(&source, &buffer.slice(0, bytes.len() as u64)?)?;
+            hand_over(recorder, given, Access::TransferDestination.into(), entry)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The host's own barrier from one state of a resource to the next.
+fn hand_over(recorder: &mut Recorder<'_>, given: &Given, from: State, to: State) -> Result<(), GpuError> {
+    let buffer = match given {
+        Given::Image(image) => return recorder.transition(image, from, to),
+        Given::Buffer(buffer) => buffer,
+    };
+    let barriers = [vk::BufferMemoryBarrier2::default()
+        .src_stage_mask(from.stage)
+        .src_access_mask(from.access)
+        .dst_stage_mask(to.stage)
+        .dst_access_mask(to.access)
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .buffer(buffer.raw())
+        .size(vk::WHOLE_SIZE)];
+    let info = vk::DependencyInfo::default().buffer_memory_barriers(&barriers);
+    // SAFETY: a recording command buffer outside rendering, and a live buffer of its device.
+    unsafe { recorder.context().device().cmd_pipeline_barrier2(recorder.command_buffer(), &info) };
+    Ok(())
+}
+
+pub(super) fn by_graph(
+    room: &mut impl Room,
+    recorder: &mut Recorder<'_>,
+    resources: &[HostResource],
+    given: &[Given],
+) -> Execution {
+    let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
+    let name = |(resource, given): (&HostResource, &Given)| match given {
+        Given::Buffer(buffer) => {
+            let handle = graph.import_buffer(resource.name, *buffer.desc(), resource.entry, resource.exit);
+            imports.buffer(&handle, buffer);
+            Named::Buffer(handle)
+        }
+        Given::Image(image) => {
+            let handle = graph.import_image(resource.name, *image.desc(), resource.entry, resource.exit);
+            imports.image(&handle, image);
+            Named::Image(handle)
+        }
+    };
+    let named: Vec<_> = resources.iter().zip(given).map(name).collect();
+    let context = recorder.context();
+    room.add(context, &mut graph, &mut imports, &named).unwrap_or_else(|error| panic!("{error}"));
+    let plan = compile(graph, &context.graph_limits());
+    let mut execution = Execution::prepare(context, plan).unwrap_or_else(|error| panic!("{error}"));
+    // SAFETY: the recorder's command buffer is recording; the host brought every import to its entry state.
+    let recorded = unsafe { execution.record(context, recorder.command_buffer(), &imports, None) };
+    recorded.unwrap_or_else(|error| panic!("{error}"));
+    execution
+}
+
+/// The host's own frame graph: its barriers around the room come from the room's accesses.
+pub(super) fn by_record(
+    room: &mut impl Room,
+    recorder: &mut Recorder<'_>,
+    resources: &[HostResource],
+    given: &[Given],
+    shim: &Shim,
+    calls: &mut Vec<Call>,
+) {
+    let accesses = room.accesses(recorder.context()).unwrap_or_else(|error| panic!("{error}"));
+    let around = |before: bool, recorder: &mut Recorder<'_>| {
+        for ((resource, given), used) in resources.iter().zip(given).zip(&accesses) {
+            let Some((first, last)) = used else { continue };
+            let [from, to] = match before {
+                true => [resource.entry, State::of(*first)],
+                false => [State::of(*last), resource.exit],
+            };
+            hand_over(recorder, given, from, to).unwrap_or_else(|error| panic!("{error}"));
+        }
+    };
+    around(true, recorder);
+    shim.take_calls();
+    room.record(recorder, given).unwrap_or_else(|error| panic!("{error}"));
+    *calls = shim.take_calls();
+    around(false, recorder);
+}
+
+/// The host's own commands after the room.
+pub(super) fn read_back(
+    recorder: &mut Recorder<'_>,
+    resources: &[HostResource],
+    given: &[Given],
+) -> Result<Vec<Readback>, GpuError> {
+    let mut copies = Vec::new();
+    for (resource, given) in resources.iter().zip(given) {
+        let Given::Buffer(buffer) = given else { continue };
+        hand_over(recorder, given, resource.exit, Access::TransferSource.into())?;
+        copies.push(recorder.read_back_buffer(buffer)?);
+    }
+    Ok(copies)
+}
