@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::model::{Curve, Point, Report};
+use super::model::{Curve, Errors, Point, Report};
 use super::plot::{self, Cost};
+use super::ranking;
 use crate::failure::Outcome;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:78em;margin:2em auto;padding:0 1em;color:#222}\
@@ -82,6 +83,9 @@ fn section(html: &mut String, measured: &[(&Report, &Curve)]) -> Outcome {
     for (report, curve) in measured {
         if measured.len() > 1 {
             let _ = write!(html, "<h3>{}</h3>", escape(&report.machine.device));
+        }
+        if curve.points.iter().all(|point| point.error == Errors::default()) {
+            html.push_str(&ranking::svg(curve).unwrap_or_default());
         }
         points(html, curve);
         comparisons(html, curve);

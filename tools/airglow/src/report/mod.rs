@@ -3,9 +3,11 @@
 pub mod date;
 pub mod html;
 pub mod interleave;
+pub mod labels;
 pub mod model;
 pub mod pareto;
 pub mod plot;
+pub mod ranking;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod sweep;

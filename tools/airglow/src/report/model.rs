@@ -157,10 +157,43 @@ impl Point {
     pub fn time(&self) -> Option<Summary> {
         Summary::of(&self.milliseconds)
     }
+}
 
-    /// The error that decides: the model's if known, else the setting's, else the arithmetic's.
-    pub fn deciding_error(&self) -> Option<f64> {
-        self.error.model.or(self.error.setting).or(self.error.arithmetic)
+/// One of the three errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    Model,
+    Setting,
+    Arithmetic,
+}
+
+impl Column {
+    /// The first error, from the model's down, that differs by more than 2 % among `points`: what their knob changes.
+    pub fn telling<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> Self {
+        let tells = |column: &Self| {
+            let values = points.clone().filter_map(|point| column.of(&point.error));
+            let (low, high) = values.fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+            low > 0.0 && high > 1.02 * low
+        };
+        [Self::Model, Self::Setting, Self::Arithmetic].into_iter().find(tells).unwrap_or(Self::Model)
+    }
+
+    /// The error itself, where it is known.
+    pub fn of(self, errors: &Errors) -> Option<f64> {
+        match self {
+            Self::Model => errors.model,
+            Self::Setting => errors.setting,
+            Self::Arithmetic => errors.arithmetic,
+        }
+    }
+
+    /// For an axis.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Model => "model error (against ray-traced truth)",
+            Self::Setting => "setting error (against the converged setting)",
+            Self::Arithmetic => "arithmetic error (GPU against f64)",
+        }
     }
 }
 

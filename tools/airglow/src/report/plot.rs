@@ -4,7 +4,8 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::model::{Curve, Point, Report};
+use super::labels::Labels;
+use super::model::{Column, Curve, Point, Report};
 use super::pareto;
 use crate::failure::{Failure, Outcome};
 
@@ -54,9 +55,10 @@ struct Dot {
 
 /// The SVG of one knob over all reports that measured it; `None` if no two points have a cost and an error.
 pub fn error_against(cost: Cost, reports: &[(&Report, &Curve)]) -> Outcome<Option<String>> {
+    let column = Column::telling(reports.iter().flat_map(|(_, curve)| &curve.points));
     let series: Vec<(String, Vec<Dot>)> = reports
         .iter()
-        .map(|(report, curve)| (report.machine.device.clone(), dots(cost, curve)))
+        .map(|(report, curve)| (report.machine.device.clone(), dots(cost, column, curve)))
         .filter(|(_, dots)| !dots.is_empty())
         .collect();
     let all = || series.iter().flat_map(|(_, dots)| dots);
@@ -68,15 +70,15 @@ pub fn error_against(cost: Cost, reports: &[(&Report, &Curve)]) -> Outcome<Optio
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        draw(&area, cost, &series, costs, errors)
+        draw(&area, [cost.label(), column.label()], &series, costs, errors)
             .map_err(|error| Failure::work(format!("could not draw a plot: {error}")))?;
     }
     Ok(Some(svg))
 }
 
-fn dots(cost: Cost, curve: &Curve) -> Vec<Dot> {
+fn dots(cost: Cost, column: Column, curve: &Curve) -> Vec<Dot> {
     let make = |point: &Point| {
-        let (at, error) = (cost.of(point)?, point.deciding_error()?);
+        let (at, error) = (cost.of(point)?, column.of(&point.error)?);
         let spread = if cost == Cost::Time { point.time().map(|time| (time.p5, time.p95)) } else { None };
         let visible = at > 0.0 && error > 0.0 && at.is_finite() && error.is_finite();
         visible.then(|| Dot {
@@ -90,34 +92,41 @@ fn dots(cost: Cost, curve: &Curve) -> Vec<Dot> {
     curve.points.iter().filter_map(make).collect()
 }
 
-/// The smallest and largest value with a margin that is even on a logarithmic axis, and wide enough to hold a power
-/// of ten.
+/// The smallest and largest value with a margin that is even on a logarithmic axis, and wide enough to hold some ticks.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), v| (low.min(v), high.max(v)));
-    let margin = (high / low).powf(0.12).max(1.3).max((12.0 * low / high).sqrt());
+    let margin = (high / low).powf(0.12).max(1.3).max((6.0 * low / high).sqrt());
     (low / margin, high * margin)
+}
+
+/// Round values within a range: 1, 2 and 5 times the powers of ten, or the powers alone where those are many.
+fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let steps: &[f64] = if last - first > 3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10.0_f64.powi(power)));
+    all.filter(|tick| (low..=high).contains(tick)).collect()
 }
 
 fn draw(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
-    cost: Cost,
+    [x_label, y_label]: [&str; 2],
     series: &[(String, Vec<Dot>)],
     costs: (f64, f64),
     errors: (f64, f64),
 ) -> Result<(), Box<dyn std::error::Error>> {
     area.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(area)
-        .margin(12)
-        .x_label_area_size(42)
-        .y_label_area_size(70)
-        .build_cartesian_2d((costs.0..costs.1).log_scale(), (errors.0..errors.1).log_scale())?;
+    let mut chart =
+        ChartBuilder::on(area).margin(12).x_label_area_size(42).y_label_area_size(70).build_cartesian_2d(
+            (costs.0..costs.1).log_scale().with_key_points(ticks(costs)),
+            (errors.0..errors.1).log_scale().with_key_points(ticks(errors)),
+        )?;
     chart
         .configure_mesh()
-        .x_desc(cost.label())
-        .y_desc("error")
+        .x_desc(x_label)
+        .y_desc(y_label)
         .label_style(("sans-serif", 13))
         .x_label_formatter(&|value| short(*value))
-        .y_label_formatter(&|value| format!("{value:.0e}"))
+        .y_label_formatter(&|value| short(*value))
         .light_line_style(WHITE)
         .bold_line_style(RGBColor(215, 215, 215))
         .draw()?;
@@ -136,10 +145,15 @@ fn draw(
         chart.draw_series(dots.iter().map(|dot| Circle::new((dot.cost, dot.error), 4, colour.filled())))?;
         let ringed = dots.iter().filter(|dot| dot.chosen);
         chart.draw_series(ringed.map(|dot| Circle::new((dot.cost, dot.error), 9, BLACK.stroke_width(2))))?;
-        chart.draw_series(dots.iter().map(|dot| {
+    }
+    let dots = || series.iter().flat_map(|(_, dots)| dots);
+    let mut labels = Labels::new(SIZE, dots().map(|dot| chart.backend_coord(&(dot.cost, dot.error))));
+    for dot in dots() {
+        let offset = labels.place(chart.backend_coord(&(dot.cost, dot.error)), &dot.setting);
+        chart.draw_series(std::iter::once(
             EmptyElement::at((dot.cost, dot.error))
-                + Text::new(dot.setting.clone(), (8, -14), ("sans-serif", 13))
-        }))?;
+                + Text::new(dot.setting.clone(), offset, ("sans-serif", 13)),
+        ))?;
     }
     chart
         .configure_series_labels()
@@ -153,7 +167,7 @@ fn draw(
 }
 
 fn short(value: f64) -> String {
-    if (0.01..10_000.0).contains(&value) {
+    if (0.01..1e6).contains(&value) {
         format!("{}", (value * 1e4).round() / 1e4)
     } else {
         format!("{value:.0e}")
@@ -172,6 +186,12 @@ mod tests {
         for text in ["coarse", "fine", "a test device", "<svg"] {
             assert!(svg.contains(text), "{text}");
         }
+    }
+
+    #[test]
+    fn ticks_are_round_and_within() {
+        assert_eq!(ticks((0.9, 6.0)), [1.0, 2.0, 5.0]);
+        assert_eq!(ticks((1e-8, 2e-4)).len(), 5);
     }
 
     #[test]
