@@ -1,7 +1,5 @@
 //! This room inside a host with a device of its own, by both roads; on lesser devices; with narrow vectors.
 
-#![expect(clippy::panic, reason = "helpers fail the test they are called from")]
-
 mod host;
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
