@@ -2,7 +2,7 @@
 //!
 //! The nave is one white mesh without a camera. This keeps the connected pieces that stand without walls and
 //! vault (floor, columns, arches, ribs, altar), gives each a material, refines what needs it (light is stored
-//! per vertex), and adds a plinth and a camera.
+//! per vertex), and adds two blocks to stand things on and a camera.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -14,8 +14,25 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 
 /// Where the camera stands and what it looks at, metres.
-const EYE: Vec3 = Vec3::new(1.9, 1.35, -5.1);
-const TARGET: Vec3 = Vec3::new(-0.1, 1.75, 0.0);
+const EYE: Vec3 = Vec3::new(1.6, 1.4, -5.3);
+const TARGET: Vec3 = Vec3::new(-0.45, 1.65, 0.0);
+
+/// Low and high corners of what carries the statue and the teapot, metres.
+const BLOCKS: [(Vec3, Vec3); 2] = [
+    (Vec3::new(-0.5, 0.0, -2.0), Vec3::new(0.5, 0.9, -1.0)),
+    (Vec3::new(-2.3, 0.0, -2.4), Vec3::new(-1.6, 0.5, -1.7)),
+];
+
+/// Longest edge at the blocks, metres: their contact shadows fall there.
+const FINE_EDGE: f32 = 0.08;
+
+/// Longest edge at a point: fine at the blocks, growing slowly with the distance from them, so that edges of
+/// one triangle ask for nearly the same.
+fn longest_edge(point: Vec3, far: f32) -> f32 {
+    let distance = |(low, high): &(Vec3, Vec3)| point.distance(point.clamp(*low, *high));
+    let nearest = BLOCKS.iter().map(distance).fold(f32::INFINITY, f32::min);
+    (FINE_EDGE + 0.25 * (nearest - 0.1).max(0.0)).min(far)
+}
 
 /// A part of the building.
 struct Part {
@@ -52,10 +69,12 @@ pub fn make(assets: &Path) -> Result<(), Error> {
             }
         }
     }
-    let refined: Vec<Mesh> =
-        parts.iter().zip(&PARTS).map(|(mesh, part)| mesh.refined(part.longest_edge)).collect();
-    let plinth = Mesh::block(Vec3::new(-0.5, 0.0, -2.0), Vec3::new(0.5, 0.9, -1.0)).refined(0.12);
-    write(&assets.join("mesh/cloister.glb"), &refined, &plinth)
+    let refined = parts
+        .iter()
+        .zip(&PARTS)
+        .map(|(mesh, part)| mesh.refined(|middle| longest_edge(middle, part.longest_edge)));
+    let blocks = BLOCKS.map(|(low, high)| Mesh::block(low, high).refined(|_| 1.5 * FINE_EDGE));
+    write(&assets.join("mesh/cloister.glb"), &refined.collect::<Vec<_>>(), &blocks)
 }
 
 /// The part one triangle belongs to: by the size of its connected piece, and within the shell (the one piece
@@ -73,7 +92,7 @@ fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3
     PARTS.iter().position(|part| part.name == name)
 }
 
-fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
+fn write(path: &Path, parts: &[Mesh], blocks: &[Mesh]) -> Result<(), Error> {
     let mut buffer = Vec::new();
     let mut accessors = Vec::new();
     let mut views = Vec::new();
@@ -104,7 +123,7 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
     };
     let building: Vec<Value> = parts.iter().enumerate().map(|(index, part)| primitive(part, index)).collect();
     let altar = PARTS.len() - 1;
-    let stand = primitive(plinth, altar);
+    let stands: Vec<Value> = blocks.iter().map(|block| primitive(block, altar)).collect();
     let materials: Vec<Value> = PARTS
         .iter()
         .map(|Part { name, base_colour: [red, green, blue], roughness, .. }| {
@@ -122,10 +141,10 @@ fn write(path: &Path, parts: &[Mesh], plinth: &Mesh) -> Result<(), Error> {
         "scenes": [{"nodes": [0, 1, 2]}],
         "nodes": [
             {"name": "building", "mesh": 0},
-            {"name": "plinth", "mesh": 1},
+            {"name": "blocks", "mesh": 1},
             {"name": "camera", "camera": 0, "translation": EYE.to_array(), "rotation": rotation.to_array()},
         ],
-        "meshes": [{"name": "building", "primitives": building}, {"name": "plinth", "primitives": [stand]}],
+        "meshes": [{"name": "building", "primitives": building}, {"name": "blocks", "primitives": stands}],
         "materials": materials,
         "cameras": [{"type": "perspective", "name": "aisle", "perspective": {"yfov": 0.95, "znear": 0.1, "zfar": 100.0}}],
         "accessors": accessors,

@@ -102,11 +102,11 @@ impl Mesh {
         }
     }
 
-    /// The mesh with equal vertices welded and every edge longer than `longest` halved until none is.
+    /// The mesh with equal vertices welded and every edge longer than `longest` of its middle halved until none is.
     ///
-    /// An edge is split by its length alone, so that two triangles that share it split alike and no
+    /// An edge is split by what it knows itself, so that two triangles that share it split alike and no
     /// crack opens between them.
-    pub fn refined(&self, longest: f32) -> Self {
+    pub fn refined(&self, longest: impl Fn(Vec3) -> f32) -> Self {
         let mut welder = Welder::default();
         let mut queue: Vec<[u32; 3]> = Vec::new();
         for triangle in self.triangles() {
@@ -116,13 +116,15 @@ impl Mesh {
                 }));
         }
         while let Some([a, b, c]) = queue.pop() {
-            let length = |i: u32, j: u32| {
-                welder.mesh.positions[i as usize].distance(welder.mesh.positions[j as usize])
+            // Times by which an edge is too long.
+            let excess = |i: u32, j: u32| {
+                let [from, to] = [i, j].map(|index| welder.mesh.positions[index as usize]);
+                from.distance(to) / longest((from + to) * 0.5)
             };
-            let edges = [(a, b, c, length(a, b)), (b, c, a, length(b, c)), (c, a, b, length(c, a))];
-            let (from, to, opposite, long) =
+            let edges = [(a, b, c, excess(a, b)), (b, c, a, excess(b, c)), (c, a, b, excess(c, a))];
+            let (from, to, opposite, worst) =
                 edges.into_iter().max_by(|x, y| x.3.total_cmp(&y.3)).unwrap_or(edges[0]);
-            if long <= longest {
+            if worst <= 1.0 {
                 welder.mesh.indices.extend([a, b, c]);
                 continue;
             }
