@@ -51,8 +51,20 @@ impl FromStr for Selector {
             "integrated" => Self::Kind(DeviceKind::Integrated),
             "discrete" => Self::Kind(DeviceKind::Discrete),
             "virtual" => Self::Kind(DeviceKind::Virtual),
-            lower => lower.parse().map_or_else(|_| Self::Name(lower.to_owned()), Self::Index),
+            lower => lower.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index),
         })
+    }
+}
+
+/// What was asked for, as a noun: ``device named `arc` ``.
+impl fmt::Display for Selector {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Best => write!(out, "device of Vulkan 1.3 or later"),
+            Self::Index(index) => write!(out, "device with index {index}"),
+            Self::Name(part) => write!(out, "device named `{part}`"),
+            Self::Kind(kind) => write!(out, "device of kind {}", format!("{kind:?}").to_lowercase()),
+        }
     }
 }
 
@@ -143,11 +155,18 @@ pub(super) fn choose(
     let devices = list(instance)?;
     let lines: Vec<_> = devices.iter().map(|(_, line)| line.clone()).collect();
     let Some(index) = selector.choose(&lines) else {
-        let known: Vec<_> = lines.iter().map(ToString::to_string).collect();
-        let problem = format!("no such device; there are: [{}]", known.join(", "));
-        return Err(GpuError::misuse(format!("{selector:?}"), problem));
+        return Err(GpuError::misuse("choosing a device", none(selector, &lines)));
     };
     devices.into_iter().nth(index).ok_or_else(|| GpuError::misuse("devices", "the list changed"))
+}
+
+/// That no device is meant by `selector`, and what could be.
+fn none(selector: &Selector, lines: &[DeviceLine]) -> String {
+    if lines.is_empty() {
+        return format!("no {selector}: there is no Vulkan device; install a driver");
+    }
+    let known: Vec<_> = lines.iter().map(ToString::to_string).collect();
+    format!("no {selector}; there are: {}; see `airglow devices`", known.join(", "))
 }
 
 /// The first queue family with all of `needed`.
@@ -204,5 +223,16 @@ mod tests {
         assert_eq!(choose("discrete"), None);
         assert_eq!(choose("3"), None);
         assert_eq!(Selector::Best.choose(&lines[..1]), Some(0));
+    }
+
+    #[test]
+    fn an_unknown_device_is_answered_with_those_there_are() {
+        let lines = [device(0, "llvmpipe", DeviceKind::Cpu, 3)];
+        let answer = |text: &str| none(&text.parse().unwrap(), &lines);
+        let there = "there are: 0: llvmpipe (Cpu), Mesa, Vulkan 1.3.0; see `airglow devices`";
+        assert_eq!(answer("noSuch"), format!("no device named `noSuch`; {there}"));
+        assert_eq!(answer("3"), format!("no device with index 3; {there}"));
+        assert_eq!(answer("discrete"), format!("no device of kind discrete; {there}"));
+        assert!(none(&Selector::Best, &[]).contains("install a driver"));
     }
 }
