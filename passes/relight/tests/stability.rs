@@ -2,13 +2,13 @@
 
 mod host;
 
-use airglow_relight::stability::{cases, sweeps};
+use airglow_relight::stability::{Selection, cases, sweeps};
 use host::with_bench;
 
 #[test]
 fn every_extreme_input_is_within_its_bound() {
     with_bench(|bench| {
-        let outcomes = cases(bench, true).unwrap();
+        let outcomes = cases(bench, &Selection { large: true, only: None }).unwrap();
         assert!(outcomes.len() > 30, "{} cases", outcomes.len());
         for outcome in &outcomes {
             println!("{:60} {:9.2e} {:8.0e} {}", outcome.name, outcome.error, outcome.bound, outcome.result);
@@ -20,7 +20,7 @@ fn every_extreme_input_is_within_its_bound() {
 #[test]
 fn every_sweep_is_within_its_bound() {
     with_bench(|bench| {
-        for sweep in sweeps(bench).unwrap() {
+        for sweep in sweeps(bench, &Selection::default()).unwrap() {
             for point in &sweep.points {
                 println!(
                     "{:30} {:9.2e}: {:.8e} {:.8e} {:8.1e}",
@@ -29,5 +29,20 @@ fn every_sweep_is_within_its_bound() {
             }
             assert!(sweep.pass(), "{sweep:#?}");
         }
+    });
+}
+
+#[test]
+fn a_name_selects_one_input_of_its_own() {
+    with_bench(|bench| {
+        let all = cases(bench, &Selection::default()).unwrap();
+        for chosen in all.iter().step_by(5) {
+            let only = cases(bench, &Selection { large: false, only: Some(&chosen.name) }).unwrap();
+            let names: Vec<_> = only.iter().map(|outcome| &outcome.name).collect();
+            assert_eq!(names, [&chosen.name]);
+        }
+        let selection = Selection { large: false, only: Some("a peak rises") };
+        assert_eq!(sweeps(bench, &selection).unwrap().len(), 1);
+        assert!(cases(bench, &selection).unwrap().is_empty());
     });
 }

@@ -4,16 +4,17 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec3};
 
-use super::{COEFFICIENT_BOUND, coefficients, length, relative};
+use super::environments::project;
+use super::{COEFFICIENT_BOUND, Map, Reproduce, Selection, coefficients, length, relative};
 use crate::RelightError;
-use crate::bench::{Bench, Texels};
-use crate::eval::{RotateRow, environment_sh, sh_rotate};
+use crate::bench::Bench;
+use crate::eval::{Evaluated, RotateRow, sh_rotate};
 
 /// The order of all sweeps.
 const ORDER: usize = 6;
 
 /// One point of a sweep.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SweepPoint {
     /// The parameter.
     pub at: f64,
@@ -21,8 +22,25 @@ pub struct SweepPoint {
     pub value: f64,
     /// The truth of it.
     pub truth: f64,
-    /// The relative L2 error of the whole vector.
+    /// The relative L2 error of the whole vector; infinite where the input was refused.
     pub error: f64,
+    /// How to run this point alone.
+    pub reproduce: Reproduce,
+}
+
+impl SweepPoint {
+    fn new(
+        at: f64,
+        found: Result<Evaluated, RelightError>,
+        measure: impl Fn(&[f64]) -> f64,
+        reproduce: Reproduce,
+    ) -> Self {
+        let (value, truth, error) = found.map_or((f64::NAN, f64::NAN, f64::INFINITY), |found| {
+            let Evaluated { values, reference } = found;
+            (measure(&values), measure(&reference), relative(&values, &reference))
+        });
+        Self { at, value, truth, error, reproduce }
+    }
 }
 
 /// A limit approached in logarithmic steps.
@@ -48,57 +66,30 @@ impl Sweep {
     }
 }
 
-/// Runs every sweep.
+/// Runs the sweeps that are selected; none, if none has the name.
 ///
 /// # Errors
 /// [`RelightError::Gpu`] when the device fails.
-pub fn sweeps(bench: &Bench<'_>) -> Result<Vec<Sweep>, RelightError> {
-    let steps = || (0..=32).map(|step| 10f64.powf(-f64::from(step) / 4.0));
-    Ok(vec![
-        Sweep {
-            name: "a turn becomes none",
-            parameter: "angle, radians",
-            measure: "distance from the unturned vector",
-            points: turns(bench, steps().collect())?,
-            bound: COEFFICIENT_BOUND,
-        },
-        Sweep {
-            name: "a turn becomes a half turn",
-            parameter: "pi - angle, radians",
-            measure: "distance from the unturned vector",
-            points: half_turns(bench, steps().collect())?,
-            bound: COEFFICIENT_BOUND,
-        },
-        Sweep {
-            name: "a peak rises",
-            parameter: "radiance of one texel, W/sr/m2",
-            measure: "norm of the coefficients",
-            points: peaks(bench)?,
-            bound: COEFFICIENT_BOUND,
-        },
-        Sweep {
-            name: "a texel shrinks into the pole",
-            parameter: "rows of the map",
-            measure: "norm of the coefficients",
-            points: poles(bench)?,
-            bound: COEFFICIENT_BOUND,
-        },
-    ])
+pub fn sweeps(bench: &Bench<'_>, selection: &Selection<'_>) -> Result<Vec<Sweep>, RelightError> {
+    let turned = "distance from the unturned vector";
+    let norm = "norm of the coefficients";
+    let sweeps: [(_, _, _, fn(&Bench<'_>) -> _); 4] = [
+        ("a turn becomes none", "angle, radians", turned, |bench| rotations(bench, |angle| angle)),
+        ("a turn becomes a half turn", "pi - angle, radians", turned, |bench| {
+            rotations(bench, |rest| PI - rest)
+        }),
+        ("a peak rises", "radiance of one texel, W/sr/m2", norm, peaks),
+        ("a texel shrinks into the pole", "rows of the map", norm, poles),
+    ];
+    let selected = sweeps.into_iter().filter(|(name, ..)| selection.has(name));
+    let run = |(name, parameter, measure, run): (_, _, _, fn(&Bench<'_>) -> Result<_, RelightError>)| {
+        Ok(Sweep { name, parameter, measure, points: run(bench)?, bound: COEFFICIENT_BOUND })
+    };
+    selected.map(run).collect()
 }
 
-fn turns(bench: &Bench<'_>, angles: Vec<f64>) -> Result<Vec<SweepPoint>, RelightError> {
-    rotations(bench, &angles, |angle| angle)
-}
-
-fn half_turns(bench: &Bench<'_>, rests: Vec<f64>) -> Result<Vec<SweepPoint>, RelightError> {
-    rotations(bench, &rests, |rest| PI - rest)
-}
-
-fn rotations(
-    bench: &Bench<'_>,
-    parameters: &[f64],
-    angle: impl Fn(f64) -> f64,
-) -> Result<Vec<SweepPoint>, RelightError> {
+fn rotations(bench: &Bench<'_>, angle: fn(f64) -> f64) -> Result<Vec<SweepPoint>, RelightError> {
+    let steps: Vec<f64> = (0..=32).map(|step| 10f64.powf(-f64::from(step) / 4.0)).collect();
     let axis = DVec3::new(1.0, -2.0, 0.5).normalize();
     let f = coefficients(ORDER);
     let row = |at: &f64| RotateRow {
@@ -106,26 +97,18 @@ fn rotations(
         f: f.clone(),
         rotation: DQuat::from_axis_angle(axis, angle(*at)),
     };
-    let rows: Vec<RotateRow> = parameters.iter().map(row).collect();
+    let rows: Vec<RotateRow> = steps.iter().map(row).collect();
     let moved = |values: &[f64]| length(&values.iter().zip(&f).map(|(a, b)| a - b).collect::<Vec<_>>());
-    let point = |(at, result): (&f64, Result<crate::eval::Evaluated, RelightError>)| {
-        let result = result?;
-        Ok(SweepPoint {
-            at: *at,
-            value: moved(&result.values),
-            truth: moved(&result.reference),
-            error: relative(&result.values, &result.reference),
-        })
-    };
-    parameters.iter().zip(sh_rotate(bench, &rows)?).map(point).collect()
+    let point = |((at, row), found)| SweepPoint::new(at, found, moved, Reproduce::from(row));
+    Ok(steps.into_iter().zip(&rows).zip(sh_rotate(bench, &rows)?).map(point).collect())
 }
 
 fn peaks(bench: &Bench<'_>) -> Result<Vec<SweepPoint>, RelightError> {
     let peak = |step: i32| {
         let radiance = 10f64.powf(f64::from(step) / 4.0);
-        let mut rgb = vec![[0.5; 3]; 64 * 32];
-        rgb[11 * 64 + 24] = [radiance as f32; 3];
-        project(bench, radiance, 64, 32, &rgb)
+        let mut map = Map::new(64, 32, 0.5);
+        map.rgb[11 * 64 + 24] = [radiance as f32; 3];
+        projected(bench, radiance, map)
     };
     (0..=24).map(peak).collect()
 }
@@ -133,23 +116,15 @@ fn peaks(bench: &Bench<'_>) -> Result<Vec<SweepPoint>, RelightError> {
 fn poles(bench: &Bench<'_>) -> Result<Vec<SweepPoint>, RelightError> {
     let pole = |power: u32| {
         let height = 1 << power;
-        let mut rgb = vec![[0.0; 3]; 8 * height as usize];
-        rgb[3] = [1.0; 3];
-        project(bench, f64::from(height), 8, height, &rgb)
+        let mut map = Map::new(8, height, 0.0);
+        map.rgb[3] = [1.0; 3];
+        projected(bench, f64::from(height), map)
     };
     (0..=13).map(pole).collect()
 }
 
-fn project(
-    bench: &Bench<'_>,
-    at: f64,
-    width: u32,
-    height: u32,
-    rgb: &[[f32; 3]],
-) -> Result<SweepPoint, RelightError> {
-    let rows = environment_sh(bench, &[ORDER], &Texels { width, height, rgb })?;
-    let Some(row) = rows.into_iter().next() else { return Err(RelightError::Order { order: ORDER }) };
-    let row = row?;
-    let (values, truth) = (row.values.concat(), row.reference.concat());
-    Ok(SweepPoint { at, value: length(&values), truth: length(&truth), error: relative(&values, &truth) })
+fn projected(bench: &Bench<'_>, at: f64, map: Map) -> Result<SweepPoint, RelightError> {
+    let found = project(bench, ORDER, &map)?;
+    let measure = |values: &[f64]| length(values);
+    Ok(SweepPoint::new(at, found, measure, Reproduce::Environment { order: ORDER, map }))
 }

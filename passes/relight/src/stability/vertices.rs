@@ -2,36 +2,48 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{Outcome, coefficients};
+use super::{Outcome, Reproduce, Selection, coefficients, number};
 use crate::bench::{Bench, Case, CaseLight};
 use crate::relight::Relight;
 use crate::rotation::Orientation;
 use crate::settings::{Settings, Storage};
 use crate::{RelightError, reference};
 
-/// Extreme meshes under one light.
-pub(super) fn cases(bench: &Bench<'_>, large: bool) -> Result<Vec<Outcome>, RelightError> {
+/// Extreme meshes under one light, those that are selected.
+pub(super) fn cases(bench: &Bench<'_>, selection: &Selection<'_>) -> Result<Vec<Outcome>, RelightError> {
     let f32 = |order| Settings { order, ..Settings::default() };
     let f16 = |order| Settings { storage: Storage::F16, ..f32(order) };
-    let mut outcomes = vec![
-        mesh(bench, "every ray blocked", f32(4), 100, true)?,
-        mesh(bench, "one vertex", f32(4), 1, false)?,
-        mesh(bench, "one vertex", f16(4), 1, false)?,
-        mesh(bench, "the lowest order", f32(1), 1000, false)?,
-        mesh(bench, "the highest order", f32(6), 1000, false)?,
-        mesh(bench, "the highest order", f16(6), 1000, false)?,
+    let mut meshes = vec![
+        ("every ray blocked", f32(4), 100),
+        ("one vertex", f32(4), 1),
+        ("one vertex", f16(4), 1),
+        ("the lowest order", f32(1), 1000),
+        ("the highest order", f32(6), 1000),
+        ("the highest order", f16(6), 1000),
     ];
-    outcomes.push(normals(bench)?);
-    if large {
-        outcomes.push(mesh(bench, "two million vertices in chunks", f16(6), 2_000_000, false)?);
+    if selection.large {
+        meshes.push(("two million vertices in chunks", f16(6), 2_000_000));
+    }
+    let mut outcomes = Vec::new();
+    for (name, settings, vertices) in meshes {
+        let name = format!("vertices: {name}, order {}, {:?}", settings.order, settings.storage);
+        if selection.has(&name) {
+            let blocked = name.contains("blocked");
+            outcomes.push(mesh(bench, name, settings, vertices, blocked)?);
+        }
+    }
+    if selection.has(NORMALS) {
+        outcomes.push(normals(bench)?);
     }
     Ok(outcomes)
 }
 
+const NORMALS: &str = "normals: of length 1e-30 to 1e30, and zero, order 6";
+
 /// The worst vertex of a mesh: |error| / (|t| |l|), or the largest colour where every ray is blocked.
 fn mesh(
     bench: &Bench<'_>,
-    name: &str,
+    name: String,
     settings: Settings,
     vertices: u32,
     blocked: bool,
@@ -45,7 +57,7 @@ fn mesh(
     let turn = DQuat::from_xyzw(0.1, -0.7, 0.5, 0.5);
     let turned = reference::light(settings.order, &wide, turn, DQuat::IDENTITY)?;
     let mut relight = Relight::new(bench.context, settings)?;
-    let mesh = relight.add_mesh(bench.context, name, vertices, Some(&vectors))?;
+    let mesh = relight.add_mesh(bench.context, &name, vertices, Some(&vectors))?;
     let light = CaseLight::Uniform(&light, turn);
     let colours = bench.results(&mut relight, &Case::new(light, mesh))?;
     let vectors = vectors.chunks_exact(count).map(|vector| vector.iter().map(|t| f64::from(*t)).collect());
@@ -56,13 +68,13 @@ fn mesh(
         (false, Storage::F16) => 1e-3,
     };
     Ok(Outcome {
-        name: format!("vertices: {name}, order {}, {:?}", settings.order, settings.storage),
+        name,
         input: format!("{vertices} vertices in chunks of at most {}", relight.chunk_vertices),
-        result: format!("{result:?} at the worst vertex"),
-        truth: format!("{truth:?}"),
+        result: format!("worst channel {}", number(result)),
+        truth: number(truth),
         error: worst,
         bound,
-        reproduce: "airglow stability relight".to_owned(),
+        reproduce: Reproduce::Case,
     })
 }
 
@@ -87,24 +99,21 @@ fn normals(bench: &Bench<'_>) -> Result<Outcome, RelightError> {
     let (error, result, truth) =
         worst(vectors.collect::<Result<Vec<_>, _>>()?.into_iter(), &turned, &colours);
     Ok(Outcome {
-        name: "normals: of length 1e-30 to 1e30, and zero, order 6".to_owned(),
+        name: NORMALS.to_owned(),
         input: format!("{} vertices of a mirrored instance", normals.len()),
-        result: format!("{result:?} at the worst vertex"),
-        truth: format!("{truth:?}"),
+        result: format!("worst channel {}", number(result)),
+        truth: number(truth),
         error,
         bound: 1e-5,
-        reproduce: "airglow stability relight".to_owned(),
+        reproduce: Reproduce::Case,
     })
 }
 
-/// The error |error| / (|t| |l|) of the worst vertex, its colour and the truth; the colour itself where t is zero.
-fn worst(
-    vectors: impl Iterator<Item = Vec<f64>>,
-    light: &[[f64; 3]],
-    colours: &[f32],
-) -> (f64, [f64; 3], [f64; 3]) {
+/// The error |error| / (|t| |l|) of the worst channel of a vertex, its value and the truth; the value itself where t
+/// is zero.
+fn worst(vectors: impl Iterator<Item = Vec<f64>>, light: &[[f64; 3]], colours: &[f32]) -> (f64, f64, f64) {
     let light_length = super::length(light.as_flattened());
-    let (mut worst, mut result, mut truth) = (-1.0, [0.0; 3], [0.0; 3]);
+    let (mut worst, mut result, mut truth) = (-1.0, 0.0, 0.0);
     for (vector, colour) in vectors.zip(colours.chunks_exact(4)) {
         let expected = reference::colour(&vector, light);
         let scale = match super::length(&vector) * light_length {
@@ -116,8 +125,8 @@ fn worst(
             // A NaN is worse than anything.
             if error.is_nan() || error > worst {
                 worst = if error.is_nan() { f64::INFINITY } else { error };
-                result = [0, 1, 2].map(|i| f64::from(colour[i]));
-                truth = expected;
+                result = f64::from(*actual);
+                truth = expected_channel;
             }
         }
     }
