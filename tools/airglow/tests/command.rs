@@ -55,7 +55,7 @@ fn exit_codes_say_what_went_wrong() {
 fn a_scene_without_an_environment_leaves_relighting_out_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let spot = path(&root(), "assets/mesh/spot.glb");
-    let plan = succeeds(folder.path(), &["plan", &spot, "--validate", "--json"]);
+    let plan = succeeds(folder.path(), &["plan", &spot, "--check", "--validate", "--json"]);
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     let left_out = &plan["left_out"][0];
     assert_eq!(
@@ -181,7 +181,8 @@ fn developed_as_the_scene_room_would(folder: &Path) {
 fn rows_of_parameters_come_back_with_results_and_reasons() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    let rows = "# half a turn about y\norder,f,qx,qy,qz,qw\n2,1;0;0.5;0.25,0,1,0,0\n2,1;0;0.5;0.25,0,0,0,0\n";
+    let rows =
+        "# half a turn about y\norder,f,qx,qy,qz,qw\n2,1;0;0.5;0.25,0,1,0,0\n2,1;0;0.5;0.25,0,0,0,0\n2,1\n";
     std::fs::write(here.join("rows.csv"), rows).unwrap();
     succeeds(here, &["eval", "sh-rotate", "--in", "rows.csv", "--out", "out.csv", "--reference"]);
     let text = std::fs::read_to_string(here.join("out.csv")).unwrap();
@@ -193,6 +194,27 @@ fn rows_of_parameters_come_back_with_results_and_reasons() {
         assert!((value - truth).abs() < 1e-6, "{value} instead of {truth}");
     }
     assert!(lines[2].contains("zero"), "{}", lines[2]);
+    assert!(lines[3].contains("the row has 2 cells"), "{}", lines[3]);
+    let rotate = ["eval", "sh-rotate", "--in", "rows.csv", "--out"];
+    let json = succeeds(here, &[&rotate[..], &["out.csv", "--json"]].concat());
+    let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(summary, serde_json::json!({ "rows": 3, "errors": 2, "file": "out.csv" }));
+    fails(here, &[&rotate[..], &["nowhere/no.csv"]].concat(), 1, "the folder nowhere is not there; make it");
+    assert!(!here.join("nowhere").exists());
+    fails(here, &["eval", "sh-rotate", "--in", "out.csv", "--out", "no.csv"], 5, "`rotated` has the name of");
     fails(here, &["eval", "sh-product", "--in", "rows.csv", "--out", "no.csv"], 5, "column g missing");
     assert!(!here.join("no.csv").exists());
+}
+
+#[test]
+fn one_extreme_input_runs_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let case = |name: &str| succeeds(here, &["stability", "relight", "--case", name]);
+    let zero = case("rotation: zero, order 6");
+    assert!(zero.contains("result refused: ") && zero.lines().count() == 3, "{zero}");
+    let half = case("rotation: half turn about y, order 6");
+    assert!(half.contains("result value ") && half.contains(", truth value "), "{half}");
+    assert!(case("a peak rises").contains("worst  at "));
+    fails(here, &["stability", "relight", "--case", "nothing"], 2, "nothing has this name");
 }

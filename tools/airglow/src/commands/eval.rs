@@ -1,14 +1,15 @@
 //! `airglow eval`: a pass's own code on rows of parameters.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use airglow::relight::Bench;
 use airglow::relight::Relight;
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 use crate::cli::Global;
 use crate::eval::table::Table;
-use crate::eval::{Settings, relight};
+use crate::eval::{self, Settings, relight};
 use crate::failure::{Failure, Outcome};
 use crate::files;
 use crate::host::device;
@@ -66,6 +67,14 @@ impl Evaluator {
         }
     }
 
+    fn results(self) -> &'static [&'static str] {
+        match self {
+            Self::EnvironmentSh => &["red", "green", "blue"],
+            Self::ShProduct => &["product"],
+            Self::ShRotate => &["rotated"],
+        }
+    }
+
     fn settings(self) -> &'static [&'static str] {
         match self {
             Self::EnvironmentSh => &["image"],
@@ -74,12 +83,25 @@ impl Evaluator {
     }
 }
 
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Summary {
+    /// Rows written.
+    rows: usize,
+    /// How many of them were refused.
+    errors: usize,
+    file: PathBuf,
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let input = arguments.input.display().to_string();
     let table = Table::read(&input, &files::read_text(&arguments.input)?)?;
     table.require(&input, arguments.name.columns())?;
+    let names = eval::names(arguments.name.results(), arguments.reference);
+    table.leave_free(&input, &names)?;
     let settings = settings(arguments)?;
+    folder_is_there(&arguments.output)?;
     let requirements = Relight::requirements(&airglow::relight::Settings { order: 6, ..Default::default() });
     let columns = device::with(global, &requirements, |device| {
         let run = device.bench();
@@ -90,16 +112,28 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::ShRotate => relight::sh_rotate(&bench, &table),
         }
     })?;
-    let (names, rows) = columns.written(arguments.reference);
-    let refused = rows.iter().filter(|row| row.is_err()).count();
+    let rows = columns.written(arguments.reference);
     files::write(&arguments.output, &table.with_results(&names, &rows)?)?;
+    let errors = rows.iter().filter(|row| row.is_err()).count();
+    let summary = Summary { rows: rows.len(), errors, file: arguments.output.clone() };
     output.say(format!(
-        "wrote {}: {} rows, {refused} refused{}",
-        arguments.output.display(),
-        rows.len(),
-        if refused > 0 { " (see the column `error`)" } else { "" }
+        "wrote {}: {} rows, {errors} refused{}",
+        summary.file.display(),
+        summary.rows,
+        if errors > 0 { " (see the column `error`)" } else { "" }
     ));
-    Ok(())
+    if output.json() { output.result(&summary, |_| String::new()) } else { Ok(()) }
+}
+
+/// A folder that is not there is more often a slip in the name than a wish for a new one.
+fn folder_is_there(file: &Path) -> Outcome {
+    match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            let (file, folder) = (file.display(), folder.display());
+            Err(Failure::work(format!("{file}: the folder {folder} is not there; make it, or correct --out")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn settings(arguments: &Arguments) -> Outcome<Settings> {

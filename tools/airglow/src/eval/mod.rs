@@ -12,22 +12,16 @@ use table::RowResult;
 /// `--set key=value`.
 pub type Settings = BTreeMap<String, String>;
 
-/// What an evaluator adds to the table: for each row the pass's values and the f64 reference's, in the order of
-/// `names`, or why the row was refused.
+/// What an evaluator adds to the table: for each row the pass's values and the f64 reference's, one vector for each
+/// result column, or why the row was refused.
 pub struct Columns {
-    /// Names of the result columns.
-    pub names: Vec<&'static str>,
     /// The pass's values and the reference's.
     pub rows: Vec<(RowResult, RowResult)>,
 }
 
 impl Columns {
-    /// Names and rows as they are written; with `reference` its columns follow, named with the suffix `_ref`.
-    pub fn written(self, reference: bool) -> (Vec<String>, Vec<RowResult>) {
-        let mut names: Vec<String> = self.names.iter().map(|name| (*name).to_owned()).collect();
-        if reference {
-            names.extend(self.names.iter().map(|name| format!("{name}_ref")));
-        }
+    /// Rows as they are written under [`names`]; with `reference` its values follow the pass's.
+    pub fn written(self, reference: bool) -> Vec<RowResult> {
         let join = |(values, truth): (RowResult, RowResult)| {
             let mut values = values?;
             if reference {
@@ -35,6 +29,15 @@ impl Columns {
             }
             Ok(values)
         };
-        (names, self.rows.into_iter().map(join).collect())
+        self.rows.into_iter().map(join).collect()
     }
+}
+
+/// Names of the result columns; with `reference` its columns follow, named with the suffix `_ref`.
+pub fn names(results: &[&str], reference: bool) -> Vec<String> {
+    let mut names: Vec<String> = results.iter().map(|name| (*name).to_owned()).collect();
+    if reference {
+        names.extend(results.iter().map(|name| format!("{name}_ref")));
+    }
+    names
 }

@@ -10,12 +10,12 @@ pub fn format(value: f64) -> String {
     if value.is_infinite() {
         return if value > 0.0 { "inf" } else { "-inf" }.to_owned();
     }
-    let magnitude = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    if (-5..9).contains(&magnitude) {
-        // Rounding up to the next power of ten may show one digit more; it is still exact.
-        format!("{value:.*}", (8 - magnitude).max(0) as usize)
-    } else {
-        format!("{value:.8e}")
+    // The exponent after rounding: 9.9999999996 has nine digits as 10.0000000.
+    let scientific = format!("{value:.8e}");
+    let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+    match exponent {
+        Some(exponent @ -5..9) => format!("{value:.*}", (8 - exponent) as usize),
+        _ => scientific,
     }
 }
 
@@ -51,6 +51,9 @@ mod tests {
         assert_eq!(format(1.0 / 3.0), "0.333333333");
         assert_eq!(format(-12345.678901234), "-12345.6789");
         assert_eq!(format(0.0), "0.00000000");
+        assert_eq!(format(9.9999999996), "10.0000000");
+        assert_eq!(format(0.00099999999996), "0.00100000000");
+        assert_eq!(format(999_999_999.7), "1.00000000e9");
         assert_eq!(format(1.5e-20), "1.50000000e-20");
         assert_eq!(format(2.0_f64.powi(40)), "1.09951163e12");
         assert_eq!([f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(format), ["inf", "-inf", "nan"]);
@@ -62,6 +65,17 @@ mod tests {
             let value = f32::from_bits(bits);
             let back = parse(&format(f64::from(value))).unwrap() as f32;
             assert!(back == value || value.is_nan() && back.is_nan(), "{value:e} came back as {back:e}");
+        }
+    }
+
+    #[test]
+    fn always_nine_digits() {
+        for power in -12..=12 {
+            for mantissa in [1.0, 1.23456789, 9.87654321, 9.999999994, 9.9999999996] {
+                let text = format(-mantissa * 10f64.powi(power));
+                let digits = text.split('e').next().unwrap().replace(['.', '-'], "");
+                assert_eq!(digits.trim_start_matches('0').len(), 9, "{text}");
+            }
         }
     }
 

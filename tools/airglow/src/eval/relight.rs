@@ -25,7 +25,7 @@ pub fn environment_sh(bench: &Bench<'_>, table: &Table, settings: &Settings) -> 
     let results = eval::environment_sh(bench, &wanted, &texels).map_err(refused)?;
     let channels = |rgb: &[[f64; 3]]| (0..3).map(|c| rgb.iter().map(|rgb| rgb[c]).collect()).collect();
     let rows = rejoin(orders, results, |found| (channels(&found.values), channels(&found.reference)));
-    Ok(Columns { names: vec!["red", "green", "blue"], rows })
+    Ok(Columns { rows })
 }
 
 /// `sh-product`: order, f, g in, product out.
@@ -37,7 +37,7 @@ pub fn sh_product(bench: &Bench<'_>, table: &Table) -> Outcome<Columns> {
     };
     let (places, rows) = accepted((0..table.row_count()).map(read).collect());
     let results = eval::sh_product(bench, &rows).map_err(Failure::work)?;
-    Ok(Columns { names: vec!["product"], rows: one_vector(places, results) })
+    Ok(Columns { rows: one_vector(places, results) })
 }
 
 /// `sh-rotate`: order, f, quaternion in, rotated out.
@@ -51,7 +51,7 @@ pub fn sh_rotate(bench: &Bench<'_>, table: &Table) -> Outcome<Columns> {
     };
     let (places, rows) = accepted((0..table.row_count()).map(read).collect());
     let results = eval::sh_rotate(bench, &rows).map_err(Failure::work)?;
-    Ok(Columns { names: vec!["rotated"], rows: one_vector(places, results) })
+    Ok(Columns { rows: one_vector(places, results) })
 }
 
 /// Splits the rows that could be read from the reasons of those that could not.
