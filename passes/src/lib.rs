@@ -10,3 +10,8 @@ pub use airglow_graph as graph;
 pub use airglow_math as math;
 #[cfg(feature = "relight")]
 pub use airglow_relight as relight;
+
+/// The host code of the front page compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
