@@ -1,7 +1,5 @@
 //! What CONVENTIONS.md states, in code: a change of sign, order or unit anywhere fails here first.
 
-#![expect(clippy::unwrap_used, reason = "helpers of a test: a failure is a failed test")]
-
 use std::f64::consts::PI;
 
 use airglow_math::sh::{self, rotation::Rotation, zonal};
