@@ -1,6 +1,7 @@
 //! `airglow explain`: why a scene is lit with the settings it is lit with.
 
 use airglow::relight::{Relight, Settings};
+use airglow_graph::LeftOut;
 use airglow_scene::{Quality, Scene, Shadow, Storage};
 use clap::Args;
 use serde::Serialize;
@@ -9,8 +10,9 @@ use crate::cli::Global;
 use crate::commands::report::Pass;
 use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
-use crate::host::device;
+use crate::host::{device, lighting};
 use crate::output::Output;
+use crate::report::html::bytes;
 use crate::report::model::{Curve, Machine, Point};
 use crate::report::relight::curves::Measurement;
 use crate::report::relight::workload::{Effort, Workload};
@@ -18,7 +20,7 @@ use crate::report::relight::workload::{Effort, Workload};
 /// Explain a pass's settings for a scene: what was chosen, its rivals, and the line of the curve that decided.
 ///
 /// The curves are measured anew on this device with the scene's largest mesh, quickly; `airglow report` measures them
-/// with care.
+/// with care. Where the pass has nothing to do, it says what was left out, why, and what would bring it back.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   airglow explain relight assets/scenes/spot.toml")]
@@ -43,6 +45,12 @@ struct Knob {
     name: String,
     setting: String,
     source: String,
+    /// What the times and bytes are of.
+    timed: String,
+    /// How errors are measured, and what their floor is.
+    norm: String,
+    /// What the curve asks, and the rule by which it chooses.
+    question: String,
     curve_chooses: String,
     because: String,
     rivals: Vec<Rival>,
@@ -52,15 +60,23 @@ struct Knob {
 struct Rival {
     setting: String,
     milliseconds: Option<f64>,
+    /// What the setting holds, bytes.
     memory: u64,
+    /// What one frame moves, bytes.
+    moved: u64,
     error_setting: Option<f64>,
     error_model: Option<f64>,
+    error_model_p95: Option<f64>,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let Pass::Relight = arguments.pass;
     let scene = arguments.scene.load(output)?;
+    if scene.environment.is_none() {
+        let left_out = lighting::no_environment(lighting::relight_bytes(&scene), None);
+        return output.result(&left_out, left_out_text);
+    }
     let effort = Effort::new(true);
     let workload = Workload::new(&scene, &effort, output)?;
     let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
@@ -76,6 +92,16 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         Ok(Explanation { machine: device.machine(), workload: workload.description.clone(), knobs })
     })?;
     output.result(&explanation, |explanation| text(explanation, scene.quality.shadow))
+}
+
+fn left_out_text(left_out: &LeftOut) -> String {
+    format!(
+        "{} is left out: {}.\nThat saves {} of device memory; nothing is baked and nothing runs.\nIt returns with {}.\n",
+        left_out.what,
+        left_out.why,
+        bytes(left_out.bytes),
+        left_out.would_return
+    )
 }
 
 fn storage_name(quality: &Quality) -> String {
@@ -104,7 +130,8 @@ fn knob(curve: Curve, setting: String, source: String) -> Knob {
         .chosen
         .map_or(("nothing".to_owned(), "the curve has no model error".to_owned()), |c| (c.setting, c.reason));
     let rivals = curve.points.iter().map(rival).collect();
-    Knob { name: curve.knob, setting, source, curve_chooses, because, rivals }
+    let Curve { knob: name, timed, norm, question, .. } = curve;
+    Knob { name, setting, source, timed, norm, question, curve_chooses, because, rivals }
 }
 
 fn rival(point: &Point) -> Rival {
@@ -112,8 +139,10 @@ fn rival(point: &Point) -> Rival {
         setting: point.setting.clone(),
         milliseconds: point.time().map(|time| time.median),
         memory: point.memory,
+        moved: point.counts.bytes,
         error_setting: point.error.setting,
         error_model: point.error.model,
+        error_model_p95: point.error.model_p95,
     }
 }
 
@@ -125,20 +154,23 @@ fn text(explanation: &Explanation, shadow: Shadow) -> String {
     }
     text.push_str(&format!("shadows: {shadow:?}\n"));
     for knob in &explanation.knobs {
-        let Knob { name, setting, source, curve_chooses, because, rivals } = knob;
+        let Knob { name, setting, source, timed, norm, question, curve_chooses, because, rivals } = knob;
         text.push_str(&format!("\n{name}: {setting}, chosen by {source}\n"));
         text.push_str(&format!("  the curve chooses {curve_chooses}: {because}\n"));
-        text.push_str("  setting          median ms     memory  setting error  model error\n");
+        text.push_str(&format!("  {question}\n  timed: {timed}\n  error: {norm}\n"));
+        text.push_str("  setting          median ms        held  moved a frame  setting error  model error    model p95\n");
         for rival in rivals {
             let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2e}"));
             let mark = if rival.setting == *setting { "*" } else { " " };
             text.push_str(&format!(
-                "{mark} {:14} {:>11} {:>10} {:>14} {:>12}\n",
+                "{mark} {:14} {:>11} {:>11} {:>14} {:>14} {:>12} {:>12}\n",
                 rival.setting,
                 rival.milliseconds.map_or("-".to_owned(), |ms| format!("{ms:.4}")),
-                crate::report::html::bytes(rival.memory),
+                bytes(rival.memory),
+                bytes(rival.moved),
                 number(rival.error_setting),
-                number(rival.error_model)
+                number(rival.error_model),
+                number(rival.error_model_p95)
             ));
         }
     }

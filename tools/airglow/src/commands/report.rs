@@ -111,23 +111,23 @@ fn command(arguments: &Arguments, machine: &Machine) -> String {
 }
 
 fn remarks(effort: &Effort, workload: &Workload) -> Vec<String> {
-    let rate = workload.bakes.last().map_or(0.0, |bake| bake.rays_per_second);
     vec![
         format!(
-            "Model error is against direct light traced with {} rays a vertex, half of them drawn from the environment; \
-             its own noise is the floor of that column.",
+            "Model error of order, storage and method is against direct light traced with {} rays a vertex, half of \
+             them drawn from the environment; its own noise is subtracted.",
             effort.truth_rays
         ),
         format!(
-            "The setting error of order and storage is against order 6 and of rays against {} rays. The largest bake \
-             ran at {:.2} million rays a second, all threads.",
-            effort.rays.last().copied().unwrap_or(0),
-            1e-6 * rate
+            "The setting error of order and storage is against order 6. The converged bake, of {} rays a vertex, ran at \
+             {:.2} million rays a second, all threads.",
+            effort.truth_rays,
+            1e-6 * workload.rays_per_second
         ),
         format!(
-            "Times are of {} vertices, the mesh's vectors repeated; {} rounds of all rivals in turn after {} rounds of \
-             warm-up.",
-            effort.vertices, effort.rounds.measured, effort.rounds.warm_up
+            "Frame times are of {} vertices, the mesh's vectors repeated; {} rounds of all rivals in turn after {} \
+             rounds of warm-up. Bakes are timed in {} rounds of their own.",
+            effort.vertices, effort.rounds.measured, effort.rounds.warm_up, effort.bake_rounds.measured
         ),
+        "Memory is what a setting holds; bytes moved are what one frame reads and writes.".to_owned(),
     ]
 }

@@ -143,9 +143,11 @@ pub fn kind_name(kind: DeviceKind) -> &'static str {
 
 /// Clocks of a software device, from the kernel's list of processors; other drivers do not tell.
 fn clocks(kind: DeviceKind) -> Option<String> {
-    if kind != DeviceKind::Cpu {
-        return None;
-    }
+    if kind == DeviceKind::Cpu { processor() } else { None }
+}
+
+/// Count, model and clock of the machine's processors, where the kernel lists them.
+pub fn processor() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let field = |name: &str| {
         let line = text.lines().find(|line| line.starts_with(name))?;

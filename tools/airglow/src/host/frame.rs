@@ -5,7 +5,7 @@ use airglow_gpu::{Imports, Record};
 use airglow_graph::{Access, Graph};
 
 use super::draw::{Developed, Region, VertexColours};
-use super::lighting::{Lighting, Reason, left_out};
+use super::lighting::{Lighting, Reason, left_out, no_environment};
 use super::renderer::{Renderer, Settings};
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
@@ -31,6 +31,7 @@ pub struct Turning {
 /// Declares a frame: environment -> light of the vertices -> the scene in each view -> picture.
 pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Declared> {
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    renderer.unread.iter().cloned().for_each(|left_out| graph.leave_out(left_out));
     let context = renderer.device.context();
 
     // Distant light comes in as the host's own image.
@@ -78,8 +79,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             Some(VertexColours { buffer: handle, ranges: truth.ranges.clone() })
         }
         Lighting::Even(Reason::NoEnvironment) => {
-            let returns = "an environment, named in the scene file or with --environment";
-            graph.leave_out(left_out("the scene has no environment", returns, bytes, time));
+            graph.leave_out(no_environment(bytes, time));
             None
         }
         Lighting::Even(Reason::Asked) | Lighting::Relight(_) => {

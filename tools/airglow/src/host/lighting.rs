@@ -137,7 +137,7 @@ fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
 }
 
 /// Bytes that the pass would hold and make for a scene: transfer of all meshes, colours of all instances.
-pub(super) fn relight_bytes(scene: &Scene) -> u64 {
+pub fn relight_bytes(scene: &Scene) -> u64 {
     let settings = relight_settings(scene);
     let [baked, drawn] = transfer::vertex_counts(scene);
     baked * settings.vector_bytes() + drawn * settings.output_bytes()
@@ -152,4 +152,10 @@ pub(super) fn left_out(why: &str, would_return: &str, bytes: u64, time: Option<f
         time,
         would_return: would_return.to_owned(),
     }
+}
+
+/// The record of the pass being left out because there is nothing to relight by.
+pub fn no_environment(bytes: u64, time: Option<f64>) -> LeftOut {
+    let returns = "an environment, named in the scene file or with --environment";
+    left_out("the scene has no environment", returns, bytes, time)
 }

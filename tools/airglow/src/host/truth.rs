@@ -38,17 +38,19 @@ pub fn of_scene(
         let mesh = transfer::bake_mesh(scene, number);
         let probe =
             Probe::new(&mesh, instance.transform, &occluders, f32::INFINITY).map_err(Failure::input)?;
-        Ok(colours(&instance.name, &probe, environment, samples, output))
+        Ok(colours(&instance.name, &probe, environment, samples, 0, output))
     };
     (0..scene.instances.len()).map(one).collect()
 }
 
 /// Colours of all vertices of `probe`, whose space is the world, from `samples` rays each (half of each kind).
+/// Different seeds give independent estimates.
 pub fn colours(
     name: &str,
     probe: &Probe<'_>,
     environment: &EnvironmentSamples<'_>,
     samples: u32,
+    seed: u32,
     output: &Output,
 ) -> Vec<[f32; 3]> {
     let mut colours = vec![[0.0; 3]; probe.vertex_count()];
@@ -62,7 +64,7 @@ pub fn colours(
             scope.spawn(|| {
                 while let Some((block, colours)) = next(&blocks) {
                     for (vertex, colour) in (block * BLOCK..).zip(colours.iter_mut()) {
-                        *colour = vertex_colour(probe, vertex, environment, samples.div_ceil(2));
+                        *colour = vertex_colour(probe, vertex, environment, samples.div_ceil(2), seed);
                     }
                     bar.inc(colours.len() as u64);
                 }
@@ -83,6 +85,7 @@ fn vertex_colour(
     vertex: usize,
     environment: &EnvironmentSamples<'_>,
     count: u32,
+    seed: u32,
 ) -> [f32; 3] {
     let Some(normal) = probe.normal(vertex) else { return [0.0; 3] };
     let frame = DQuat::from_rotation_arc(DVec3::Z, normal);
@@ -99,7 +102,8 @@ fn vertex_colour(
         let weight = cosine / PI / (cosine / PI + environment_density);
         sum = [0, 1, 2].map(|c| sum[c] + weight * f64::from(radiance[c]));
     };
-    let seed = 2 * vertex as u32;
+    // Two sequences for each vertex; seeds lie far apart.
+    let seed = (2 * vertex as u32) ^ seed.rotate_right(2);
     for index in 0..count {
         add(frame * sequence::cosine_hemisphere(sequence::sobol(index, seed)));
         if let Some(direction) = environment.sample(sequence::sobol(index, seed + 1)) {
@@ -135,7 +139,7 @@ mod tests {
         {
             let occluders = Occluders::build(&blockers).unwrap();
             let probe = Probe::new(&mesh, Mat4::IDENTITY, &occluders, f32::INFINITY).unwrap();
-            let found = vertex_colour(&probe, 0, &samples, 4096)[0];
+            let found = vertex_colour(&probe, 0, &samples, 4096, 0)[0];
             assert!((found - expected).abs() < 0.01 * expected, "{found} instead of {expected}");
         }
     }

@@ -51,7 +51,8 @@ pub fn compare(points: &[Point], chosen: &str) -> Result<Vec<Comparison>, MathEr
         .collect()
 }
 
-fn paired(mine: &Point, rival: &Point) -> Result<Comparison, MathError> {
+/// One point's time against another's, both measured in the same rounds.
+pub fn paired(mine: &Point, rival: &Point) -> Result<Comparison, MathError> {
     let (mine_times, rival_times) = (&mine.milliseconds, &rival.milliseconds);
     let interval = statistics::paired_ratio_interval(mine_times, rival_times, CONFIDENCE, RESAMPLES, SEED)?;
     Ok(Comparison {

@@ -72,7 +72,7 @@ pub struct Point {
     pub setting: String,
     /// Milliseconds of each measured run, warm-up excluded; empty where only error was measured.
     pub milliseconds: Vec<f64>,
-    /// Memory the setting needs, bytes.
+    /// Memory the setting holds, bytes: on the device, or as the curve's `timed` says.
     pub memory: u64,
     /// Counts that do not depend on the machine.
     pub counts: Counts,
@@ -102,6 +102,9 @@ pub struct Errors {
     pub setting: Option<f64>,
     /// Against ray-traced truth.
     pub model: Option<f64>,
+    /// 95th percentile over what is lit of the error against ray-traced truth, relative to the root mean square.
+    #[serde(default)]
+    pub model_p95: Option<f64>,
 }
 
 /// The paired ratio of two settings' times.
@@ -215,7 +218,7 @@ pub mod testing {
             milliseconds: vec![milliseconds, milliseconds * 1.1, milliseconds * 0.9],
             memory: (milliseconds * 1000.0) as u64,
             counts: Counts { bytes: 7, invocations: 5, dispatches: 1, draws: 0 },
-            error: Errors { arithmetic: Some(1e-7), setting: Some(error), model: None },
+            error: Errors { arithmetic: Some(1e-7), setting: Some(error), ..Errors::default() },
         };
         let curve = Curve {
             knob: "resolution".to_owned(),

@@ -3,7 +3,7 @@
 use super::model::{Point, Report};
 use crate::failure::{Failure, Outcome};
 
-const HEADER: [&str; 20] = [
+const HEADER: [&str; 21] = [
     "pass",
     "device",
     "driver",
@@ -23,6 +23,7 @@ const HEADER: [&str; 20] = [
     "error_arithmetic",
     "error_setting",
     "error_model",
+    "error_model_p95",
     "norm",
 ];
 
@@ -70,5 +71,6 @@ fn numbers(point: &Point) -> Vec<String> {
         real(point.error.arithmetic),
         real(point.error.setting),
         real(point.error.model),
+        real(point.error.model_p95),
     ]
 }

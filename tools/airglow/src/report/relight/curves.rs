@@ -3,6 +3,7 @@
 use airglow::relight::rivals::{self as contestants, Rival as Contestant, Task};
 use airglow::relight::{Bench, Method, Settings, Storage};
 
+use super::choice;
 use super::errors;
 use super::rivals::{self, Timed};
 use super::workload::{Effort, FULL_ORDER, Workload, truncate};
@@ -10,10 +11,7 @@ use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
 use crate::output::Output;
 use crate::report::interleave;
-use crate::report::model::{Choice, Counts, Curve, Errors, Point};
-
-/// A step to the next dearer setting is worth it if it lowers the model error to less than this share.
-const WORTH: f64 = 0.8;
+use crate::report::model::{Choice, Curve, Errors, Point};
 
 /// What the curves are measured with.
 pub struct Measurement<'a> {
@@ -32,65 +30,33 @@ impl Measurement<'_> {
     pub fn order(&self) -> Outcome<Curve> {
         let settings =
             (1..=FULL_ORDER).map(|order| (order.to_string(), Settings { order, ..Settings::default() }));
-        let mut points = self.frame_points("orders", settings.collect())?;
-        let chosen = worth_its_cost(&points);
-        self.curve(
-            "order",
-            "How many bands of spherical harmonics are worth their bytes? The time and memory grow with the square.",
-            &mut points,
-            chosen,
-        )
+        let points = self.frame_points("orders", settings.collect())?;
+        let chosen = choice::climb(&points)?;
+        let question = format!(
+            "How many bands of spherical harmonics are worth their bytes? The memory grows with the square. {}",
+            choice::rule()
+        );
+        self.curve("order", &question, points, chosen)
     }
 
     /// Storage of the transfer vectors.
     pub fn storage(&self) -> Outcome<Curve> {
         let setting = |name: &str, storage| (name.to_owned(), Settings { storage, ..Settings::default() });
-        let mut points =
+        let points =
             self.frame_points("storage", vec![setting("f32", Storage::F32), setting("f16", Storage::F16)])?;
         let reason = "exact to 1e-5; f16 halves the transfer where its error of up to 1e-3 is accepted";
         let chosen = Choice { setting: "f32".to_owned(), reason: reason.to_owned() };
-        self.curve("storage", "What do half floats cost and save?", &mut points, Some(chosen))
+        self.curve("storage", "What do half floats cost and save?", points, Some(chosen))
     }
 
     /// Compute against the papers' fragment pass.
     pub fn method(&self) -> Outcome<Curve> {
         let setting = |name: &str, method| (name.to_owned(), Settings { method, ..Settings::default() });
         let settings = vec![setting("compute", Method::Compute), setting("fragment", Method::Fragment)];
-        let mut points = self.frame_points("methods", settings)?;
-        let chosen = fastest(&points);
+        let points = self.frame_points("methods", settings)?;
+        let chosen = choice::fastest(&points, "compute")?;
         let question = "Compute into the vertex buffer, or the papers' fragment pass over a packed rectangle and a copy?";
-        self.curve("method", question, &mut points, chosen)
-    }
-
-    /// Rays of the bake: the time is the bake's, on the CPU.
-    pub fn rays(&self) -> Outcome<Curve> {
-        let settings = Settings::default();
-        let converged = self.colours(settings, &self.workload.converged()?.vectors)?;
-        let mut points = Vec::new();
-        for bake in &self.workload.bakes {
-            let colours = self.colours(settings, &bake.vectors)?;
-            let error = errors::of(&colours, settings.order, &bake.vectors, &converged, self.workload)?;
-            let rays = u64::from(bake.rays) * self.workload.vertex_count as u64;
-            points.push(Point {
-                setting: format!("{} rays", bake.rays),
-                milliseconds: vec![bake.milliseconds],
-                memory: 0,
-                counts: Counts { invocations: rays, ..Counts::default() },
-                error,
-            });
-        }
-        let chosen = worth_its_cost(&points);
-        Ok(Curve {
-            knob: "rays".to_owned(),
-            question: "How many rays for each vertex? They cost bake time only; the frame does not change. \
-                       Invocations are rays."
-                .to_owned(),
-            norm: errors::NORM.to_owned(),
-            timed: format!("one bake of order {FULL_ORDER} on the CPU, all threads"),
-            points,
-            chosen,
-            comparisons: Vec::new(),
-        })
+        self.curve("method", question, points, chosen)
     }
 
     /// Layouts, workgroups and vertices of an invocation, beside moving the same bytes without arithmetic.
@@ -107,6 +73,7 @@ impl Measurement<'_> {
             setting: contestants[shipped].name(),
             reason: against_bytes(&contestants, &points, shipped),
         });
+        let chosen = chosen.map(|choice| Self::measured_on(choice, &self.device.machine().device));
         let comparisons = match &chosen {
             Some(choice) => interleave::compare(&points, &choice.setting).map_err(Failure::work)?,
             None => Vec::new(),
@@ -129,7 +96,7 @@ impl Measurement<'_> {
 
     /// Points of settings of the pass: device time of a frame, and all three errors.
     fn frame_points(&self, what: &str, settings: Vec<(String, Settings)>) -> Outcome<Vec<Point>> {
-        let full = &self.workload.converged()?.vectors;
+        let full = &self.workload.converged;
         let best = Settings { order: FULL_ORDER, ..Settings::default() };
         let converged = self.colours(best, full)?;
         let mut all = Vec::new();
@@ -146,20 +113,27 @@ impl Measurement<'_> {
         Ok(timed.into_iter().zip(found).map(|(timed, error)| point(timed, error)).collect())
     }
 
-    fn colours(&self, settings: Settings, vectors: &[f32]) -> Outcome<Vec<[f32; 3]>> {
+    /// The pass's colours with these settings and vectors of full order.
+    pub(super) fn colours(&self, settings: Settings, vectors: &[f32]) -> Outcome<Vec<[f32; 3]>> {
         let run = self.device.bench();
         let bench = Bench { context: self.device.context(), run: &run };
         errors::colours(&bench, settings, self.workload, vectors)
+    }
+
+    /// The choice with the name of what it was measured on.
+    pub(super) fn measured_on(choice: Choice, device: &str) -> Choice {
+        let reason = choice.reason.trim_end_matches([' ', ';']);
+        Choice { reason: format!("{reason}. Measured on {device}."), ..choice }
     }
 
     fn curve(
         &self,
         knob: &str,
         question: &str,
-        points: &mut Vec<Point>,
+        points: Vec<Point>,
         chosen: Option<Choice>,
     ) -> Outcome<Curve> {
-        let points = std::mem::take(points);
+        let chosen = chosen.map(|choice| Self::measured_on(choice, &self.device.machine().device));
         let comparisons = match &chosen {
             Some(choice) => interleave::compare(&points, &choice.setting).map_err(Failure::work)?,
             None => Vec::new(),
@@ -167,9 +141,11 @@ impl Measurement<'_> {
         Ok(Curve {
             knob: knob.to_owned(),
             question: question.to_owned(),
-            norm: errors::NORM.to_owned(),
+            norm: errors::norm(self.workload),
             timed: format!(
-                "rotation of the light and the kernel over {} vertices, device time of a frame",
+                "rotation of the light and the kernel over {} vertices, device time of a frame; memory is what the \
+                 device holds (vectors, results), bytes moved are those of a frame: equal where a frame moves each byte \
+                 held once",
                 self.effort.vertices
             ),
             points,
@@ -187,38 +163,6 @@ fn point(timed: Timed, error: Errors) -> Point {
         counts: timed.counts,
         error,
     }
-}
-
-/// The first setting, in the knob's order, after which no step is worth its cost.
-pub fn worth_its_cost(points: &[Point]) -> Option<Choice> {
-    let mut chosen = points.first()?;
-    let mut reason = format!("{}: the only setting", chosen.setting);
-    for next in &points[1..] {
-        let (here, there) = (chosen.error.model?, next.error.model?);
-        let times = next.time()?.median / chosen.time()?.median;
-        let line = format!(
-            "{} -> {}: model error {here:.3e} -> {there:.3e} for {times:.2} times the time",
-            chosen.setting, next.setting
-        );
-        if there >= WORTH * here {
-            let percent = 100.0 * (1.0 - WORTH);
-            return Some(Choice {
-                setting: chosen.setting.clone(),
-                reason: format!("{line}: less than {percent:.0} % lower, not worth it"),
-            });
-        }
-        reason = format!("{line}: worth it, and nothing lies beyond");
-        chosen = next;
-    }
-    Some(Choice { setting: chosen.setting.clone(), reason })
-}
-
-/// The setting with the smallest median time.
-fn fastest(points: &[Point]) -> Option<Choice> {
-    let time = |point: &Point| point.time().map_or(f64::INFINITY, |time| time.median);
-    let best = points.iter().min_by(|a, b| time(a).total_cmp(&time(b)))?;
-    let reason = format!("the fastest on this device: {:.4} ms", time(best));
-    Some(Choice { setting: best.setting.clone(), reason })
 }
 
 /// How the shipped shape stands to the fastest one, to the fastest kernel that only moves bytes, and to the copy.
@@ -244,29 +188,4 @@ fn against_bytes(contestants: &[Contestant], points: &[Point], shipped: usize) -
         bytes.1,
         mine / copy.0
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn points(errors: &[f64]) -> Vec<Point> {
-        let point = |(index, &error): (usize, &f64)| Point {
-            setting: index.to_string(),
-            milliseconds: vec![1.0 + index as f64],
-            memory: 1,
-            counts: Counts::default(),
-            error: Errors { model: Some(error), ..Errors::default() },
-        };
-        errors.iter().enumerate().map(point).collect()
-    }
-
-    #[test]
-    fn the_choice_stops_where_error_stops_falling() {
-        let chosen = worth_its_cost(&points(&[0.5, 0.2, 0.05, 0.045, 0.001])).unwrap();
-        assert_eq!(chosen.setting, "2");
-        assert!(chosen.reason.contains("2 -> 3"), "{}", chosen.reason);
-        assert_eq!(worth_its_cost(&points(&[0.4, 0.1])).unwrap().setting, "1");
-        assert!(worth_its_cost(&[]).is_none());
-    }
 }

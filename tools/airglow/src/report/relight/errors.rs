@@ -4,12 +4,20 @@ use airglow::relight::{Bench, Case, CaseLight, Relight, Settings, reference};
 use airglow_math::statistics::relative_l2;
 use glam::DQuat;
 
+use super::truth::flat;
 use super::workload::{Workload, truncate};
 use crate::failure::{Failure, Outcome};
 use crate::report::model::Errors;
 
-/// How errors are measured, for the report.
-pub const NORM: &str = "arithmetic: largest |error| / (|t| |l|) of any vertex and channel; setting and model: relative L2 over all vertices and channels";
+/// How errors are measured, and the floor of the model error, for the report.
+pub fn norm(workload: &Workload) -> String {
+    format!(
+        "arithmetic: largest |error| / (|t| |l|) of any vertex and channel; setting and model: root mean square error \
+         over root mean square colour, of all vertices and channels. The model column is above the truth's own noise, \
+         {:.1e}, which is estimated from two independent halves of its rays and subtracted in quadrature",
+        workload.truth.noise()
+    )
+}
 
 /// The pass's colours of the workload's vertices with these settings and vectors of full order.
 pub fn colours(
@@ -38,16 +46,16 @@ pub fn of(
     converged: &[[f32; 3]],
     workload: &Workload,
 ) -> Outcome<Errors> {
-    let relative = |truth: &[[f32; 3]]| relative_l2(&flat(colours), &flat(truth)).map_err(Failure::work);
     Ok(Errors {
         arithmetic: Some(arithmetic(colours, order, vectors, workload)),
-        setting: Some(relative(converged)?),
-        model: Some(relative(&workload.truth)?),
+        setting: Some(relative_l2(&flat(colours), &flat(converged)).map_err(Failure::work)?),
+        model: Some(workload.truth.error(colours)?),
+        model_p95: Some(workload.truth.error_p95(colours)?),
     })
 }
 
 /// The largest |error| / (|t| |l|) of any vertex and channel against the f64 dot product of the same vectors.
-fn arithmetic(colours: &[[f32; 3]], order: usize, vectors: &[f32], workload: &Workload) -> f64 {
+pub fn arithmetic(colours: &[[f32; 3]], order: usize, vectors: &[f32], workload: &Workload) -> f64 {
     let light = workload.light_of(order);
     let light_norms = [0, 1, 2].map(|c| light.iter().map(|rgb| rgb[c] * rgb[c]).sum::<f64>().sqrt());
     let vectors = truncate(vectors, order);
@@ -64,8 +72,4 @@ fn arithmetic(colours: &[[f32; 3]], order: usize, vectors: &[f32], workload: &Wo
         }
     }
     worst
-}
-
-fn flat(colours: &[[f32; 3]]) -> Vec<f64> {
-    colours.iter().flatten().map(|&value| f64::from(value)).collect()
 }

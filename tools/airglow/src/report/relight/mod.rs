@@ -1,6 +1,11 @@
 //! The report on relighting: error against time and memory for each of its knobs, and the rivals it was chosen from.
 
+pub mod baker;
+pub mod choice;
 pub mod curves;
 pub mod errors;
+mod rays;
 pub mod rivals;
+pub mod subset;
+pub mod truth;
 pub mod workload;

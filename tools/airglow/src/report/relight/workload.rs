@@ -1,16 +1,17 @@
 //! What the report lights: the largest mesh of a scene, baked at every quality, with its truth.
 
-use std::time::Instant;
-
-use airglow_bake::{Occluders, Probe, Settings, Silent, Threads, bake};
+use airglow_bake::{Mesh, Occluders, Probe};
 use airglow_math::sphere::equirect::Projector;
 use airglow_scene::{Environment, Scene, Shadow};
-use glam::Mat4;
 
+use super::baker::{Bake, Baker};
+use super::subset::Subset;
+use super::truth::Truth;
 use crate::failure::{Failure, Outcome};
 use crate::host::environment_samples::EnvironmentSamples;
-use crate::host::{holes, transfer, truth};
+use crate::host::{holes, transfer};
 use crate::output::Output;
+use crate::report::interleave::Rounds;
 
 /// The highest order with kernels: what is measured is truncated from it.
 pub const FULL_ORDER: usize = 6;
@@ -18,53 +19,70 @@ pub const FULL_ORDER: usize = 6;
 /// How much is measured.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Rays for each vertex of the bakes compared, ascending; the last is the converged setting.
+    /// Rays for each vertex of the bakes compared, ascending.
     pub rays: Vec<u32>,
-    /// Rays for each vertex of the ray-traced truth.
+    /// Rays for each vertex of the ray-traced truth, and of the converged bake: at least four times the most of
+    /// `rays`.
     pub truth_rays: u32,
-    /// Vertices that times are measured at.
+    /// Vertices lit: a larger mesh is thinned to about as many.
+    pub lit: usize,
+    /// Vertices whose bake is timed, about.
+    pub timed_bake: usize,
+    /// How often each bake is timed.
+    pub bake_rounds: Rounds,
+    /// Vertices that frame times are measured at.
     pub vertices: usize,
-    /// Rounds of interleaved timing.
-    pub rounds: super::super::interleave::Rounds,
+    /// Rounds of interleaved timing of frames.
+    pub rounds: Rounds,
 }
 
 impl Effort {
     /// What a committed report is made with, or with `quick` enough to see the shape of the curves.
     pub fn new(quick: bool) -> Self {
-        use super::super::interleave::Rounds;
+        let (timed_bake, vertices) = (512, 100_000);
         if quick {
-            let rounds = Rounds { warm_up: 2, measured: 9 };
-            return Self { rays: vec![64, 256, 1024], truth_rays: 512, vertices: 100_000, rounds };
+            return Self {
+                rays: vec![64, 256, 1024],
+                truth_rays: 4096,
+                lit: 4096,
+                timed_bake,
+                bake_rounds: Rounds { warm_up: 0, measured: 5 },
+                vertices,
+                rounds: Rounds { warm_up: 2, measured: 9 },
+            };
         }
-        let rays = vec![64, 256, 1024, 4096, 16_384];
-        Self { rays, truth_rays: 8192, vertices: 100_000, rounds: Rounds { warm_up: 3, measured: 41 } }
+        Self {
+            rays: vec![64, 256, 1024, 4096],
+            truth_rays: 16_384,
+            lit: 16_384,
+            timed_bake,
+            bake_rounds: Rounds { warm_up: 1, measured: 9 },
+            vertices,
+            rounds: Rounds { warm_up: 3, measured: 41 },
+        }
     }
-}
-
-/// A bake of the mesh.
-pub struct Bake {
-    /// Rays for each vertex.
-    pub rays: u32,
-    /// Vertex-major vectors of [`FULL_ORDER`].
-    pub vectors: Vec<f32>,
-    /// Wall-clock milliseconds it took, hierarchy not included.
-    pub milliseconds: f64,
-    /// Rays a second.
-    pub rays_per_second: f64,
 }
 
 /// The mesh, its light and its bakes.
 pub struct Workload {
     /// In a sentence.
     pub description: String,
-    /// Vertices of the mesh.
+    /// Vertices lit: all of the mesh, or an even part of them.
     pub vertex_count: usize,
+    /// Vertices of the part whose bake is timed.
+    pub timed_vertices: usize,
     /// One for each of the effort's numbers of rays.
     pub bakes: Vec<Bake>,
+    /// Vectors of [`FULL_ORDER`] from two independent halves of the truth's rays, neither the rays of `bakes`.
+    pub halves: [Vec<f32>; 2],
+    /// The mean of the halves: the converged bake.
+    pub converged: Vec<f32>,
+    /// Rays a second of a half, all threads.
+    pub rays_per_second: f64,
     /// The environment's f64 coefficients at [`FULL_ORDER`], turned into the world.
     pub light: Vec<[f64; 3]>,
     /// Ray-traced colours of the vertices.
-    pub truth: Vec<[f32; 3]>,
+    pub truth: Truth,
 }
 
 impl Workload {
@@ -85,20 +103,20 @@ impl Workload {
             Shadow::Scene => (0..scene.instances.len()).map(placed).collect(),
         };
         let occluders = Occluders::build(&blockers).map_err(Failure::input)?;
+        let whole = transfer::bake_mesh(scene, number);
+        let (lit, timed) = (Subset::new(&whole, effort.lit), Subset::new(&whole, effort.timed_bake));
         let transform = scene.instances[number].transform;
-        let mesh = transfer::bake_mesh(scene, number);
-        let bakes = effort
-            .rays
-            .iter()
-            .map(|&rays| bake_mesh(&mesh, transform, &occluders, rays, output))
-            .collect::<Outcome<_>>()?;
-        let probe = Probe::new(&mesh, transform, &occluders, f32::INFINITY).map_err(Failure::input)?;
+        let baker = Baker { occluders: &occluders, transform, output };
+        let probe = Probe::new(&lit.mesh(), transform, &occluders, f32::INFINITY).map_err(Failure::input)?;
         let samples = EnvironmentSamples::new(environment).map_err(Failure::input)?;
+        let half = |seed| baker.bake(&lit.mesh(), FULL_ORDER, effort.truth_rays / 2, seed);
+        let (first, second) = (half(1)?, half(2)?);
+        let halves = [first.transfer.coefficients, second.transfer.coefficients];
+        let vertex_count = lit.mesh().positions.len();
         Ok(Self {
             description: format!(
-                "{} ({} vertices, {} triangles cast shadows) under {} ({} x {})",
-                mesh.name,
-                mesh.positions.len(),
+                "{}, {} triangles cast shadows, under {} ({} x {})",
+                counted(&whole, vertex_count),
                 blockers.iter().map(|blocker| blocker.indices.len() / 3).sum::<usize>(),
                 environment
                     .file
@@ -107,22 +125,32 @@ impl Workload {
                 environment.width,
                 environment.height
             ),
-            vertex_count: mesh.positions.len(),
-            bakes,
+            vertex_count,
+            timed_vertices: timed.mesh().positions.len(),
+            bakes: baker.compare(&lit.mesh(), &timed.mesh(), effort)?,
+            converged: halves[0].iter().zip(&halves[1]).map(|(a, b)| 0.5 * (a + b)).collect(),
+            halves,
+            rays_per_second: first.stats.rays_per_second(),
             light: project(environment)?,
-            truth: truth::colours(mesh.name, &probe, &samples, effort.truth_rays, output),
+            truth: Truth::trace(whole.name, &probe, &samples, effort.truth_rays, output)?,
         })
-    }
-
-    /// The bake with most rays.
-    pub fn converged(&self) -> Outcome<&Bake> {
-        self.bakes.last().ok_or_else(|| Failure::work("no bake was made"))
     }
 
     /// The first `order`^2 coefficients of the light.
     pub fn light_of(&self, order: usize) -> &[[f64; 3]] {
         &self.light[..order * order]
     }
+}
+
+/// A mesh and its vertices, and how many of them are lit if that is not all.
+fn counted(mesh: &Mesh<'_>, lit: usize) -> String {
+    let all = mesh.positions.len();
+    let part = if lit < all {
+        format!(", {lit} of them lit here, in even runs of triangles")
+    } else {
+        String::new()
+    };
+    format!("{} ({all} vertices{part})", mesh.name)
 }
 
 /// The first `order`^2 coefficients of vectors of [`FULL_ORDER`].
@@ -134,27 +162,6 @@ pub fn truncate(vectors: &[f32], order: usize) -> Vec<f32> {
 /// The vectors repeated until there are `vertices` of them.
 pub fn tile(vectors: &[f32], order: usize, vertices: usize) -> Vec<f32> {
     vectors.iter().copied().cycle().take(vertices * order * order).collect()
-}
-
-/// Not from the cache: the time is part of what is reported.
-fn bake_mesh(
-    mesh: &airglow_bake::Mesh<'_>,
-    transform: Mat4,
-    occluders: &Occluders<'_>,
-    rays: u32,
-    output: &Output,
-) -> Outcome<Bake> {
-    output.say(format!("baking {} with {rays} rays a vertex", mesh.name));
-    let threads = Threads::new(std::thread::available_parallelism().map_or(1, usize::from));
-    let settings = Settings { order: FULL_ORDER, rays, ..Settings::default() };
-    let start = Instant::now();
-    let baked = bake(mesh, transform, occluders, &settings, &threads, &mut Silent).map_err(Failure::input)?;
-    Ok(Bake {
-        rays,
-        vectors: baked.transfer.coefficients,
-        milliseconds: 1e3 * start.elapsed().as_secs_f64(),
-        rays_per_second: baked.stats.rays_per_second(),
-    })
 }
 
 /// The environment in the world, exactly.
