@@ -6,6 +6,7 @@ use airglow_scene::{Quality, Scene, Shadow, Storage};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Outcome};
+use crate::host::unread;
 use crate::output::Output;
 
 /// Where bakes are kept, unless told otherwise.
@@ -74,8 +75,8 @@ impl SceneOptions {
     /// Loads the scene, repeats its warnings, and applies the options that override it.
     pub fn load(&self, output: &Output) -> Outcome<Scene> {
         let mut scene = airglow_scene::load(&self.scene).map_err(Failure::input)?;
-        for warning in &scene.warnings {
-            output.warn(warning.to_string());
+        for warning in scene.warnings.iter().map(ToString::to_string).chain(unread::warnings(&scene)) {
+            output.warn(warning);
         }
         if scene.instances.is_empty() {
             return Err(Failure::input(format!(

@@ -22,5 +22,6 @@ pub mod shaders;
 pub mod texture;
 pub mod transfer;
 pub mod truth;
+pub mod unread;
 pub mod upload;
 pub mod view;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Buffer, Execution, Label, Location, Timing, TimingSummary};
-use airglow_graph::{BufferDesc, Plan};
+use airglow_graph::{BufferDesc, LeftOut, Plan};
 use airglow_scene::{Camera, FloatImage, Scene};
 use glam::DQuat;
 
@@ -15,6 +15,7 @@ use super::environment_samples::EnvironmentSamples;
 use super::frame::{self, Declared, Turning};
 use super::lighting::{self, Lighting, Source};
 use super::scene::{self, DeviceScene};
+use super::unread;
 use super::upload;
 use super::view::{self, ViewConstants};
 use crate::failure::{Failure, Outcome};
@@ -28,6 +29,8 @@ pub struct Renderer<'d> {
     pub(super) ambient: [f32; 3],
     pub(super) lighting: Lighting,
     pub(super) pipelines: Pipelines,
+    /// What the scene holds and no pass of this frame uses.
+    pub(super) unread: Vec<LeftOut>,
     /// What the pass takes, or would take.
     pub(super) relight_bytes: u64,
     /// What the pass takes in a frame, where that was measured.
@@ -133,6 +136,7 @@ impl<'d> Renderer<'d> {
             ambient,
             lighting: Lighting::new(device, scene, source)?,
             pipelines: Pipelines::new(context, hdr).map_err(Failure::work)?,
+            unread: unread::unread(scene),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
             linear: target("linear picture", 12)?,
