@@ -31,6 +31,7 @@ pub struct Turning {
 /// Declares a frame: environment -> light of the vertices -> the scene in each view -> picture.
 pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Declared> {
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    renderer.unread.iter().cloned().for_each(|left_out| graph.leave_out(left_out));
     let context = renderer.device.context();
 
     // Distant light comes in as the host's own image.
