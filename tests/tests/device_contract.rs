@@ -5,39 +5,15 @@ use airglow_gpu::ash::vk;
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
 use airglow_gpu::requirements::{Limit, LimitNeed};
 use airglow_gpu::{
-    AdoptInfo, Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context,
-    Execution, Feature, FeatureSet, GpuError, Imports, Label, Location, Record, Requirements, Timing,
+    AdoptInfo, Binding, Buffer, ComputePipeline, Context, Execution, Feature, FeatureSet, GpuError, Imports,
+    Label, Location, Record, Requirements, Timing,
 };
 use airglow_graph::{Access, BufferDesc, Graph, PassKind};
+use airglow_tests::colours::{self, BYTES, COUNT, STORAGE, storage};
 use airglow_tests::compare::assert_same_bits;
 use airglow_tests::device::{fixture, open};
-use airglow_tests::spirv::words;
 use std::ffi::{CStr, c_char};
 use std::sync::OnceLock;
-
-const COUNT: u32 = 256;
-const BYTES: u64 = COUNT as u64 * 16;
-const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
-    vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
-        | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
-        | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
-);
-
-fn colours_pipeline(context: &Context) -> ComputePipeline {
-    let bindings =
-        [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::UniformBuffer)];
-    let spirv = words("test/colours_compute");
-    let desc =
-        ComputePipelineDesc { name: "colours", spirv: &spirv, bindings: &bindings, push_constant_size: 4 };
-    context.create_compute_pipeline(&desc).expect("the pipeline is sound")
-}
-
-fn storage(context: &Context, owner: &str, size: u64) -> Buffer {
-    let desc = BufferDesc { size, usage: STORAGE };
-    context
-        .create_buffer(Label::new(owner, "colours"), &desc, Location::Device)
-        .expect("memory for a small buffer")
-}
 
 fn record_colours(
     recorder: &mut airglow_gpu::Recorder<'_>,
@@ -110,7 +86,7 @@ fn functions_are_found_by_the_names_of_their_extensions() {
         let info = AdoptInfo { api_version, extensions: &names, get_device_proc_addr, ..info };
         // SAFETY: the handles are the open device's; everything is dropped before it, after `run` has waited.
         let context = unsafe { Context::adopt(info) }.unwrap();
-        let (pipeline, buffer) = (colours_pipeline(&context), storage(&context, "test", BYTES));
+        let (pipeline, buffer) = (colours::pipeline(&context), storage(&context, "test", BYTES));
         let copy = device.run(&context, |recorder| {
             record_colours(recorder, &pipeline, &buffer, 1.0)?;
             recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
@@ -206,7 +182,7 @@ fn memory_is_charged_to_owners_and_freed_frames_later() {
 fn contexts_interleave() {
     let (left, right) = (fixture(), fixture());
     let contexts = [left.context(), right.context()];
-    let pipelines = contexts.map(colours_pipeline);
+    let pipelines = contexts.map(colours::pipeline);
     let buffers = contexts.map(|context| storage(context, "test", BYTES));
     let mut copies = [Vec::new(), Vec::new()];
     for round in 0..3u8 {
@@ -232,7 +208,7 @@ fn contexts_interleave() {
 fn timestamps_come_frames_later_without_waiting() {
     let fixture = fixture();
     let context = fixture.context();
-    let pipeline = colours_pipeline(context);
+    let pipeline = colours::pipeline(context);
     let buffer = storage(context, "test", BYTES);
     let mut graph: Graph<Record> = Graph::new();
     let mut handle = graph.import_buffer(
@@ -291,7 +267,7 @@ fn validation_is_alive() {
         return;
     }
     let context = fixture.context();
-    let pipeline = colours_pipeline(context);
+    let pipeline = colours::pipeline(context);
     let buffer = storage(context, "test", BYTES);
     // Without the barrier between dispatch and copy: a hazard.
     let result = fixture.device().run(context, |recorder| {

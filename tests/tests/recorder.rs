@@ -2,37 +2,13 @@
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, Buffer, ColorAttachment, ComputePipeline, ComputePipelineDesc,
-    Context, DepthAttachment, DepthState, GpuError, GraphicsPipelineDesc, Label, Load, Location, Recorder,
-    Rendering,
+    Binding, Blend, ColorAttachment, DepthAttachment, DepthState, GpuError, GraphicsPipelineDesc, Label,
+    Load, Location, Recorder, Rendering,
 };
 use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+use airglow_tests::colours::{self, BYTES, storage};
 use airglow_tests::device::fixture;
 use airglow_tests::spirv::words;
-
-const COUNT: u32 = 256;
-const BYTES: u64 = COUNT as u64 * 16;
-const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
-    vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
-        | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
-        | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
-);
-
-fn colours_pipeline(context: &Context) -> ComputePipeline {
-    let bindings =
-        [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::UniformBuffer)];
-    let spirv = words("test/colours_compute");
-    let desc =
-        ComputePipelineDesc { name: "colours", spirv: &spirv, bindings: &bindings, push_constant_size: 4 };
-    context.create_compute_pipeline(&desc).expect("the pipeline is sound")
-}
-
-fn storage(context: &Context, owner: &str, size: u64) -> Buffer {
-    let desc = BufferDesc { size, usage: STORAGE };
-    context
-        .create_buffer(Label::new(owner, "colours"), &desc, Location::Device)
-        .expect("memory for a small buffer")
-}
 
 fn error<T>(result: Result<T, GpuError>) -> String {
     result.err().expect("this must be refused").to_string()
@@ -42,7 +18,7 @@ fn error<T>(result: Result<T, GpuError>) -> String {
 fn misuse_is_refused_before_it_is_recorded() {
     let fixture = fixture();
     let context = fixture.context();
-    let pipeline = colours_pipeline(context);
+    let pipeline = colours::pipeline(context);
     let buffer = storage(context, "test", BYTES);
     let uniform_only = BufferDesc { size: 64, usage: vk::BufferUsageFlags::UNIFORM_BUFFER };
     let uniform =

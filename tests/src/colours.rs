@@ -1,0 +1,46 @@
+//! A small kernel and a buffer for it: what tests of the device layer record when it does not matter what.
+
+use airglow_gpu::ash::vk;
+use airglow_gpu::{
+    BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context, Label, Location,
+};
+use airglow_graph::BufferDesc;
+
+use crate::spirv::words;
+
+/// Colours the kernel writes.
+pub const COUNT: u32 = 256;
+
+/// Bytes of them, four f32 each.
+pub const BYTES: u64 = COUNT as u64 * 16;
+
+/// How the buffer is used.
+pub const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
+    vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
+        | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
+        | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
+);
+
+/// The kernel of `test/colours_compute`.
+///
+/// # Panics
+/// When the device refuses the pipeline: the test that asks for it has failed.
+pub fn pipeline(context: &Context) -> ComputePipeline {
+    let bindings =
+        [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::UniformBuffer)];
+    let spirv = words("test/colours_compute");
+    let desc =
+        ComputePipelineDesc { name: "colours", spirv: &spirv, bindings: &bindings, push_constant_size: 4 };
+    context.create_compute_pipeline(&desc).expect("the pipeline is sound")
+}
+
+/// A storage buffer of `size` bytes.
+///
+/// # Panics
+/// When there is no memory for it: the test that asks for it has failed.
+pub fn storage(context: &Context, owner: &str, size: u64) -> Buffer {
+    let desc = BufferDesc { size, usage: STORAGE };
+    context
+        .create_buffer(Label::new(owner, "colours"), &desc, Location::Device)
+        .expect("memory for a small buffer")
+}
