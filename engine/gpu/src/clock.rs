@@ -33,11 +33,17 @@ impl Clock {
     }
 }
 
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+/// Value below which the share `at` (0 to 1) of the values lies, linear between neighbours; `None` of none.
+pub(crate) fn quantile(values: impl Iterator<Item = f64>, at: f64) -> Option<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    Some((sorted[last / 2] + sorted[last.div_ceil(2)]) / 2.0)
+    let position = at * sorted.len().checked_sub(1)? as f64;
+    let [below, above] = [position.floor(), position.ceil()].map(|index| sorted[index as usize]);
+    Some(below + (above - below) * position.fract())
+}
+
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    quantile(values, 0.5)
 }
 
 #[cfg(test)]
@@ -65,5 +71,7 @@ mod tests {
         assert_eq!(median([3.0, 1.0, 2.0].into_iter()), Some(2.0));
         assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), Some(2.5));
         assert_eq!(median([].into_iter()), None);
+        assert_eq!(quantile([0.0, 10.0, 20.0].into_iter(), 0.05), Some(1.0));
+        assert_eq!(quantile([7.0].into_iter(), 0.95), Some(7.0));
     }
 }

@@ -4,7 +4,7 @@
 //! pass is timed from when all that was recorded before it is done to when its own work is done, its barriers
 //! included.
 
-use crate::clock::{Clock, mask, median};
+use crate::clock::{Clock, mask, median, quantile};
 use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
@@ -33,6 +33,10 @@ pub struct PassTime {
     pub name: String,
     /// Median over the frames kept, in seconds.
     pub median: f64,
+    /// 5th percentile, in seconds.
+    pub p5: f64,
+    /// 95th percentile, in seconds.
+    pub p95: f64,
 }
 
 /// Medians over the frames kept, in seconds.
@@ -235,8 +239,8 @@ impl Timing {
     /// Medians over the frames kept, or `None` when there are none yet.
     pub fn summary(&self) -> Option<TimingSummary> {
         let pass = |(i, name): (usize, &String)| {
-            let median = median(self.history.iter().map(|frame| frame.passes[i]))?;
-            Some(PassTime { name: name.clone(), median })
+            let at = |share| quantile(self.history.iter().map(|frame| frame.passes[i]), share);
+            Some(PassTime { name: name.clone(), median: at(0.5)?, p5: at(0.05)?, p95: at(0.95)? })
         };
         Some(TimingSummary {
             frames: self.history.len(),

@@ -111,6 +111,9 @@ struct Stat {
 struct PassStat {
     name: String,
     median_ms: f64,
+    /// 5th and 95th percentile of the frames.
+    p5_ms: f64,
+    p95_ms: f64,
 }
 
 #[derive(Serialize)]
@@ -214,6 +217,8 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
             let pass = |pass: &airglow_gpu::PassTime| PassStat {
                 name: pass.name.clone(),
                 median_ms: 1e3 * pass.median,
+                p5_ms: 1e3 * pass.p5,
+                p95_ms: 1e3 * pass.p95,
             };
             timing.passes.iter().map(pass).collect()
         }),
@@ -232,12 +237,13 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
 fn text(stat: &Stat) -> String {
     let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
     for pass in &stat.passes {
-        text.push_str(&format!("  {:32} {:9.3} ms\n", pass.name, pass.median_ms));
+        let PassStat { name, median_ms, p5_ms, p95_ms } = pass;
+        text.push_str(&format!("  {name:32} {median_ms:9.3} ms  ({p5_ms:.3} to {p95_ms:.3})\n"));
     }
     match (stat.span_ms, stat.sum_ms) {
         (Some(span), Some(sum)) => {
             text.push_str(&format!(
-                "  span {span:.3} ms, sum {sum:.3} ms, median of {} frames\n",
+                "  span {span:.3} ms, sum {sum:.3} ms; medians of {} frames (5th to 95th percentile)\n",
                 stat.frames
             ));
         }
