@@ -17,7 +17,8 @@ pub type Record = Box<dyn Fn(&mut Recorder<'_>, &Resources<'_>) -> Result<(), Gp
 /// What a recording took.
 #[derive(Clone, Copy, Debug)]
 pub struct Recorded {
-    /// CPU time of recording.
+    /// CPU time of recording, without collecting the timestamps of earlier frames (lavapipe waits for the device
+    /// in there).
     pub cpu: Duration,
     /// Passes recorded.
     pub passes: usize,
@@ -82,7 +83,6 @@ impl Execution {
         imports: &Imports,
         mut timing: Option<&mut Timing>,
     ) -> Result<Recorded, GpuError> {
-        let start = Instant::now();
         let Self { plan, transients, buffer_barriers, image_barriers } = self;
         check_imports(context, plan, imports)?;
         let resources = Resources { plan, transients, imports };
@@ -96,6 +96,7 @@ impl Execution {
         if let Some(timing) = timing.as_deref_mut() {
             timing.begin_frame(context, command_buffer, plan.steps().iter().map(|step| &*step.name))?;
         }
+        let start = Instant::now();
         barriers(plan.acquires())?;
         for (index, step) in plan.steps().iter().enumerate() {
             if let Some(timing) = timing.as_deref_mut() {
