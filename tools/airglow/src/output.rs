@@ -1,5 +1,6 @@
 //! Where results, remarks and progress go: results to standard output, everything else to standard error.
 
+use std::io::{ErrorKind, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -7,6 +8,16 @@ use serde::Serialize;
 
 use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+
+/// Prints a result. A reader that has seen enough and closed the pipe (`| head`) is no failure.
+pub fn print(text: &str) -> Outcome {
+    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::work(format!("standard output: {error}; free the disk or redirect elsewhere")))
+        }
+        _ => Ok(()),
+    }
+}
 
 /// How the user wants to be told things.
 #[derive(Clone, Debug)]
@@ -43,19 +54,18 @@ impl Output {
         if self.json {
             let json = serde_json::to_string_pretty(value)
                 .map_err(|error| Failure::work(format!("could not write the result as JSON: {error}")))?;
-            println!("{json}");
+            print(&json)
         } else {
-            let text = text(value);
-            println!("{}", text.trim_end());
+            print(&text(value))
         }
-        Ok(())
     }
 
     /// The failure that ends the command.
     pub fn failure(&self, failure: &Failure) {
         if self.json {
             let value = serde_json::json!({ "error": failure.to_string(), "kind": failure.kind_name() });
-            println!("{value}");
+            // What could not be printed is told below all the same.
+            let _ = print(&value.to_string());
         }
         eprintln!("error: {failure}");
     }

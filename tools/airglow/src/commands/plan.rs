@@ -11,7 +11,7 @@ use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
 use crate::host::renderer::{Renderer, Settings};
-use crate::output::Output;
+use crate::output::{Output, print};
 
 /// Print the plan of a frame: passes in order, barriers and their causes, memory; and what was left out, why, what
 /// that saved, and what would bring it back.
@@ -88,8 +88,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Form::Json => plan.json().map_err(Failure::work)?,
         })
     })?;
-    println!("{}", text.trim_end());
-    Ok(())
+    print(&text)
 }
 
 /// What the pass takes in a frame that has it, seconds.
