@@ -1,12 +1,10 @@
 //! A small kernel and a buffer for it: what tests of the device layer record when it does not matter what.
 
 use airglow_gpu::ash::vk;
-use airglow_gpu::{
-    BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context, Label, Location,
-};
+use airglow_gpu::{Buffer, ComputePipeline, Context, Label, Location};
 use airglow_graph::BufferDesc;
 
-use crate::spirv::words;
+use crate::workload;
 
 /// Colours the kernel writes.
 pub const COUNT: u32 = 256;
@@ -26,12 +24,7 @@ pub const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
 /// # Panics
 /// When the device refuses the pipeline: the test that asks for it has failed.
 pub fn pipeline(context: &Context) -> ComputePipeline {
-    let bindings =
-        [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::UniformBuffer)];
-    let spirv = words("test/colours_compute");
-    let desc =
-        ComputePipelineDesc { name: "colours", spirv: &spirv, bindings: &bindings, push_constant_size: 4 };
-    context.create_compute_pipeline(&desc).expect("the pipeline is sound")
+    workload::colours(context).expect("the pipeline is sound")
 }
 
 /// A storage buffer of `size` bytes.

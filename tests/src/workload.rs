@@ -26,7 +26,7 @@ pub struct Workload {
     pub imports: Imports,
     /// Timestamps of its passes.
     pub timing: Timing,
-    /// The picture; the plan takes it from [`Workload::entry`] to [`Workload::exit`].
+    /// The picture that the plan draws, between the two states given to [`Workload::new`].
     pub picture: Image,
 }
 
