@@ -52,8 +52,8 @@ impl Effort {
             };
         }
         Self {
-            rays: vec![64, 256, 1024, 4096],
-            truth_rays: 16_384,
+            rays: vec![64, 256, 1024, 4096, 16_384],
+            truth_rays: 65_536,
             lit: 16_384,
             timed_bake,
             bake_rounds: Rounds { warm_up: 1, measured: 9 },
