@@ -1,5 +1,6 @@
 //! The measurements behind the choice of estimator, as this crate's README prints them:
-//! `cargo test --release -p airglow-bake --lib study -- --ignored --nocapture`
+//! `cargo test --release -p airglow-bake --lib study -- --nocapture`
+//! In a debug build they are made on fewer vertices and rays; what they are to show is asserted in both.
 
 use airglow_math::sh::{product::TripleProduct, zonal};
 use glam::{DVec3, Mat4, Vec3};
@@ -10,6 +11,10 @@ use crate::directions::Directions;
 use crate::{BelowHorizon, Mesh, Occluders, Settings};
 
 const SIDE: u32 = 160;
+
+/// Every how manyth vertex is baked, the rays of the truth, and the rays compared, ascending.
+const EFFORT: (usize, u32, &[u32]) =
+    if cfg!(debug_assertions) { (701, 8192, &[64, 512]) } else { (211, 65536, &[64, 256, 1024, 4096]) };
 
 /// Positions, normals and indices of a sphere pushed in and out by waves.
 fn bumpy_sphere() -> (Vec<[f32; 3]>, Vec<[f32; 3]>, Vec<u32>) {
@@ -56,17 +61,18 @@ fn relative(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-#[ignore = "a measurement for the README, ten seconds in release"]
 fn densities_control_variate_and_horizon() {
     let (positions, normals, indices) = bumpy_sphere();
     let mesh = Mesh { name: "bumpy", positions: &positions, normals: &normals, indices: &indices };
     let occluders = Occluders::build(&[mesh.occluder()]).unwrap();
-    let picks: Vec<usize> = (0..positions.len()).step_by(211).collect();
+    let (step, truth_rays, compared) = EFFORT;
+    let picks: Vec<usize> = (0..positions.len()).step_by(step).collect();
     let settings = |rays, below| Settings { order: 6, rays, visibility: Some(below), ..Settings::default() };
     let vertices = |settings| Vertices::new(&mesh, Mat4::IDENTITY, &occluders, &settings).unwrap();
-    let truth = bake(&vertices(settings(65536, BelowHorizon::Blocked)), &picks);
-    for rays in [64, 256, 1024, 4096] {
-        for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+    let truth = bake(&vertices(settings(truth_rays, BelowHorizon::Blocked)), &picks);
+    let mut chosen = Vec::new();
+    for &rays in compared {
+        let errors = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| {
             let settings = settings(rays, BelowHorizon::Blocked);
             let mut these = vertices(settings);
             these.directions = Directions::with_cosine_share(&settings, share).unwrap();
@@ -79,12 +85,27 @@ fn densities_control_variate_and_horizon() {
                 error(&with),
                 error(&without)
             );
-        }
+            error(&with)
+        });
+        let [uniform, _, half, _, cosine] = errors;
+        assert!(
+            half[0] < 1.05 * uniform[0],
+            "transfer, {rays} rays: half {} uniform {}",
+            half[0],
+            uniform[0]
+        );
+        assert!(half[1] < 0.7 * cosine[1], "visibility, {rays} rays: half {} cosine {}", half[1], cosine[1]);
+        chosen.push(half);
+    }
+    for pair in chosen.windows(2) {
+        assert!(pair[1][0] < 0.5 * pair[0][0], "transfer error must fall with rays: {chosen:?}");
+        assert!(pair[1][1] < 0.5 * pair[0][1], "visibility error must fall with rays: {chosen:?}");
     }
     for below in [BelowHorizon::Mean, BelowHorizon::Visible, BelowHorizon::Blocked] {
-        let [transfer, visibility] = bake(&vertices(settings(16384, below)), &picks);
+        let [transfer, visibility] = bake(&vertices(settings(truth_rays / 4, below)), &picks);
         let errors = [2, 3, 4, 6].map(|order| product_error(order, &picks, &normals, &transfer, &visibility));
         println!("{below:?}: product(H, v) against transfer at orders 2, 3, 4, 6: {errors:.4?}");
+        assert!(errors[3] < 0.1 && errors[3] < errors[0], "{below:?}: {errors:?}");
     }
 }
 
