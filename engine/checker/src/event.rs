@@ -69,7 +69,7 @@ impl Event {
         if !direct && !meets(src_stage, self.after) {
             return Meeting::No;
         }
-        self.available |= direct && src_access.contains(self.written);
+        self.available |= direct && grants(src_access, self.written);
         self.after |= dst.0;
         if self.available {
             self.visible.push(dst);
@@ -79,13 +79,25 @@ impl Event {
 
     /// Whether its write is visible to all of an access.
     pub fn is_visible_to(&self, stage: S, access: A) -> bool {
-        self.visible.iter().any(|(s, a)| holds(*s, stage) && a.contains(access))
+        self.visible.iter().any(|(s, a)| holds(*s, stage) && grants(*a, access))
     }
 }
 
 /// Whether a scope holds every stage; `ALL_COMMANDS` stands for all.
 pub(crate) fn holds(scope: S, stage: S) -> bool {
     scope.contains(S::ALL_COMMANDS) || scope.contains(stage)
+}
+
+/// Whether accesses hold all of others; `MEMORY_READ` and `MEMORY_WRITE` stand for every read and write.
+pub(crate) fn grants(access: A, wanted: A) -> bool {
+    let mut missing = wanted & !access;
+    if access.contains(A::MEMORY_WRITE) {
+        missing &= !written(missing);
+    }
+    if access.contains(A::MEMORY_READ) {
+        missing &= written(missing);
+    }
+    missing.is_empty()
 }
 
 /// Whether two scopes share a stage, so that barriers chain.

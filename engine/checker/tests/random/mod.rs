@@ -60,8 +60,15 @@ fn state(die: usize, depth: bool) -> State {
     match die {
         0..=3 => State::idle(vk::ImageLayout::GENERAL),
         4..=9 => State::of(accesses[die % 6]).on_queue_family(OTHER_FAMILY),
+        10 => everything(vk::AccessFlags2::MEMORY_READ),
+        11 => everything(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE),
         _ => State::of(accesses[die % 6]),
     }
+}
+
+/// What a host says that does not track its stages.
+fn everything(access: vk::AccessFlags2) -> State {
+    State { stage: vk::PipelineStageFlags2::ALL_COMMANDS, access, ..State::idle(vk::ImageLayout::GENERAL) }
 }
 
 type Filled = [[bool; LAYERS as usize]; MIPS as usize];

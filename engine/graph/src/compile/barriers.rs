@@ -1,8 +1,9 @@
 //! Phase 7: the barriers between epochs, from entry to exit, subresource by subresource.
 
 use super::coalesce::coalesce;
-use super::epochs::{EVERYWHERE, Epoch, NOWHERE, Scope, Slot, push};
+use super::epochs::{Epoch, Slot, push};
 use super::lives::contains;
+use super::scope::{EVERYWHERE, NOWHERE, Scope, one_of};
 use crate::access::{State, writes};
 use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
@@ -184,8 +185,7 @@ impl Row<'_> {
             let layout_changes = previous.layout != epoch.layout;
             let reads_on = !layout_changes && !previous.writes() && !epoch.writes();
             if reads_on && epoch.opens.0.is_empty() {
-                // Both read: whoever writes next waits for both.
-                epoch.stage |= previous.stage;
+                epoch.also_waits_for(&previous);
             } else if layout_changes || !previous.is_idle() {
                 let cause = match (previous.writes(), epoch.writes()) {
                     (true, false) => Cause::ReadAfterWrite,
@@ -205,7 +205,7 @@ impl Row<'_> {
                 if reads_on && epoch.begin != Slot::End && one_of(previous.stage) != previous.stage {
                     // To see what was written, one stage is enough; whoever writes next waits for all.
                     barrier.src_stage = one_of(previous.stage);
-                    epoch.stage |= previous.stage;
+                    epoch.also_waits_for(&previous);
                 }
                 push_barrier(self.plan.slot(epoch.begin), self.desc, barrier);
             }
@@ -267,12 +267,6 @@ fn add_exit(
     if !nothing_to_do {
         push(epochs, host, found);
     }
-}
-
-/// One stage is enough for barriers to chain through.
-fn one_of(stages: PipelineStageFlags2) -> PipelineStageFlags2 {
-    let bits = stages.as_raw();
-    PipelineStageFlags2::from_raw(bits & bits.wrapping_neg())
 }
 
 /// What the execution of the same plan before this one left of a transient: contents nobody wants, and uses

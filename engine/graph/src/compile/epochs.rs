@@ -3,19 +3,10 @@
 //! A barrier stands between neighbouring epochs and nowhere else, so that reads after reads cost nothing and
 //! one barrier serves all reads of what was written.
 
-use crate::access::State;
-use crate::access::{WRITES, writes};
+use super::scope::{NOWHERE, Scope, covers, union};
+use crate::access::{State, WRITES, writes};
 use crate::pass::Use;
 use ash::vk::{AccessFlags2, ImageLayout, PipelineStageFlags2};
-
-/// Stages, and accesses in them.
-pub(super) type Scope = (PipelineStageFlags2, AccessFlags2);
-
-/// The scope of nothing.
-pub(super) const NOWHERE: Scope = (PipelineStageFlags2::NONE, AccessFlags2::NONE);
-/// The scope of every access that can be.
-pub(super) const EVERYWHERE: Scope =
-    (PipelineStageFlags2::from_raw(u64::MAX), AccessFlags2::from_raw(u64::MAX));
 
 /// Where in the plan an epoch begins, and so where the barrier before it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,7 +63,7 @@ impl Epoch {
     /// The accesses that read what was there before, unless all of it is visible in one of `scopes` already.
     pub fn unseen(&self, scopes: &[Scope]) -> AccessFlags2 {
         let reads = if self.keeps { self.access & !WRITES } else { AccessFlags2::NONE };
-        let seen = |(stage, access): &Scope| stage.contains(self.stage) && access.contains(reads);
+        let seen = |scope: &Scope| covers(*scope, (self.stage, reads));
         if scopes.iter().any(seen) { AccessFlags2::NONE } else { reads }
     }
 
@@ -86,8 +77,12 @@ impl Epoch {
         !self.writes()
             && !other.writes()
             && self.layout == other.layout
-            && self.stage.contains(other.stage)
-            && self.access.contains(other.access)
+            && covers((self.stage, self.access), (other.stage, other.access))
+    }
+
+    /// Both read: whoever writes next waits for both.
+    pub fn also_waits_for(&mut self, earlier: &Self) {
+        self.stage = union((self.stage, AccessFlags2::NONE), (earlier.stage, AccessFlags2::NONE)).0;
     }
 
     /// Takes another epoch in, if both only read and in one layout.
@@ -95,10 +90,8 @@ impl Epoch {
         // Two uses by one step are one epoch whatever they are: validation lets no overlapping write pass.
         let joins = !self.writes() && !other.writes() && self.layout == other.layout;
         if joins {
-            self.stage |= other.stage;
-            self.access |= other.access;
-            self.opens.0 |= other.opens.0;
-            self.opens.1 |= other.opens.1;
+            (self.stage, self.access) = union((self.stage, self.access), (other.stage, other.access));
+            self.opens = union(self.opens, other.opens);
             self.last = other.last.or(self.last);
         }
         joins

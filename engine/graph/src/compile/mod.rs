@@ -15,6 +15,7 @@ mod hazards;
 mod lifetimes;
 mod lives;
 mod order;
+mod scope;
 mod validate;
 
 use crate::error::GraphError;
