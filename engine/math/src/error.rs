@@ -1,6 +1,7 @@
 //! The one error type of the room: what was wrong with an argument, and how to mend it.
 
 use crate::sh::MAX_ORDER;
+use crate::world::Axis;
 
 /// Why a function of this crate refused its input.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,6 +34,24 @@ pub enum MathError {
         z: f64,
         /// Scalar component.
         w: f64,
+    },
+    /// A matrix that is neither a rotation nor a reflection.
+    #[error("the matrix departs from an orthogonal one by {deviation}: give a rotation or a reflection")]
+    Orthogonal {
+        /// Largest element of its transpose times itself less the identity.
+        deviation: f64,
+    },
+    /// Axes of which two lie along the same line.
+    #[error(
+        "right {right:?}, up {up:?} and forward {forward:?} lie along fewer than three axes: give each its own"
+    )]
+    Axes {
+        /// What points to the right.
+        right: Axis,
+        /// What points up.
+        up: Axis,
+        /// What points forward.
+        forward: Axis,
     },
     /// A map or table with a side of no texels, or of more than the limit.
     #[error("{what} of {width} x {height} is not supported: give sides of 1 to {limit}")]

@@ -1,5 +1,5 @@
-//! Spherical harmonics, sphere and cube maps, quadrature, sequences and error statistics; f64 truth and f32
-//! use, no GPU.
+//! Spherical harmonics, sphere and cube maps, quadrature, sequences, error statistics and hosts' conventions; f64
+//! truth and f32 use, no GPU.
 //!
 //! Conventions, stated once for the whole room:
 //!
@@ -7,6 +7,7 @@
 //! - Real orthonormal spherical harmonics, polar axis +Z, index `i = l(l+1)+m`, the Condon-Shortley factor
 //!   `(-1)^m` kept for every m: `Y_1,-1 = -sqrt(3/4pi) y`, `Y_1,0 = sqrt(3/4pi) z`, `Y_1,1 = -sqrt(3/4pi) x`.
 //! - "Order n" means n bands, so n² coefficients; orders 1 to [`sh::MAX_ORDER`] are accepted.
+//! - A host with other axes, units or depth states them as a [`World`].
 //! - Equirectangular and cube maps: see [`sphere::equirect`] and [`sphere::cube`].
 //!
 //! ```
@@ -28,5 +29,7 @@ pub mod sphere;
 pub mod statistics;
 #[cfg(test)]
 mod testing;
+pub mod world;
 
 pub use error::MathError;
+pub use world::World;

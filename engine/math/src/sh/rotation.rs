@@ -38,6 +38,21 @@ impl Rotation {
         Ok(Self { order, bands: bands_of(order, DMat3::from_quat(unit)) })
     }
 
+    /// The same for any orthogonal matrix, `turned(s) = f(matrix⁻¹ s)`: a reflection is a rotation and an inversion,
+    /// which changes the sign of odd bands.
+    ///
+    /// # Errors
+    /// [`MathError::Order`]; [`MathError::Orthogonal`] when the matrix is not orthogonal to 1e-6.
+    pub fn from_matrix(order: usize, matrix: DMat3) -> Result<Self, MathError> {
+        check_order(order)?;
+        let deviation = (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array();
+        let deviation = deviation.into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        if !matrix.is_finite() || deviation > 1e-6 {
+            return Err(MathError::Orthogonal { deviation });
+        }
+        Ok(Self { order, bands: bands_of(order, matrix) })
+    }
+
     /// The order given at creation.
     #[must_use]
     pub fn order(&self) -> usize {
