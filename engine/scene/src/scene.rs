@@ -1,6 +1,6 @@
 //! The scene: everything that was read, as plain data.
 
-use glam::{Mat3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 
 use crate::animation::{Animation, Node, Skin};
 use crate::camera::{Camera, Sphere};
@@ -74,11 +74,6 @@ impl Instance {
     /// The transform turns the mesh inside out: the winding of its triangles is reversed in the world.
     pub fn is_mirrored(&self) -> bool {
         self.transform.determinant() < 0.0
-    }
-
-    /// Takes object-space normals to the world, up to their length: the inverse transpose.
-    pub fn normal_matrix(&self) -> Mat3 {
-        Mat3::from_mat4(self.transform).inverse().transpose()
     }
 
     /// The uniform scale and true, or false if the transform scales its axes unequally or shears
