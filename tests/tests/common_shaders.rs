@@ -6,7 +6,8 @@
 use airglow_gpu::{Binding, BindingDesc, BindingKind, ComputePipelineDesc, Label, Location};
 use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::{cube, equirect};
-use airglow_math::{sequence, sh};
+use airglow_math::world::Depth;
+use airglow_math::{World, sequence, sh};
 use airglow_scene::{srgb_encode, tone};
 use airglow_tests::device::fixture;
 use airglow_tests::host_layout;
@@ -25,6 +26,7 @@ const BINDINGS: [BindingDesc; 2] =
 struct Input {
     direction: [f32; 4],
     color: [f32; 4],
+    depth_coefficients: [f32; 4],
 }
 
 #[repr(C)]
@@ -40,9 +42,9 @@ struct Row {
     display: [f32; 3],
     angle: f32,
     encoded: [f32; 3],
-    padding: f32,
+    view_distance: f32,
     decoded: [f32; 3],
-    padding_2: f32,
+    padding: f32,
 }
 
 /// Directions over the sphere, the axes and the diagonals; colours to 30; numbers over the range of halves.
@@ -59,11 +61,19 @@ fn inputs() -> Vec<Input> {
             let [u, v] = sequence::sobol(i as u32, 11);
             let halved = (2.0f64.powf(44.0 * u - 26.0) * if i % 2 == 0 { 1.0 } else { -1.0 }) as f32;
             Input {
-                direction: direction.as_vec3().extend(0.0).to_array(),
+                direction: direction.as_vec3().extend(v as f32).to_array(),
                 color: [(30.0 * u * v * v) as f32, v as f32, (1.5 * u) as f32, halved],
+                depth_coefficients: world(i).depth_coefficients().map(|c| c as f32),
             }
         })
         .collect()
+}
+
+/// Hosts with all six kinds of depth, in metres and in centimetres, one after another.
+fn world(row: usize) -> World {
+    let far = [Some(4000.0), None, Some(30.0)][row / 2 % 3];
+    let depth = Depth { reversed: row % 2 == 1, near: 0.5, far, orthographic: row / 2 % 3 == 2 };
+    World { depth, metres_per_unit: [1.0, 0.01][row / 6 % 2], ..World::default() }
 }
 
 /// The shader's rows for `inputs`.
@@ -169,6 +179,25 @@ fn the_shader_functions_agree_with_f64() {
     }
 }
 
+/// Depth that goes from near to far is as good as its own 24 bits; a reversed perspective is good in
+/// every distance.
+#[test]
+fn view_distances_are_those_of_the_host_s_world() {
+    let inputs = inputs();
+    let mut there_and_back = Worst::new("depth there and back", 3e-7);
+    let mut reversed = Worst::new("perspective, reversed", 3e-7);
+    for ((row, input), found) in inputs.iter().enumerate().zip(run(&inputs)) {
+        let (world, depth) = (world(row), f64::from(input.direction[3]));
+        let found = f64::from(found.view_distance) / world.metres_per_unit;
+        there_and_back.add(world.depth.value(found), depth, input);
+        if world.depth.reversed && !world.depth.orthographic && depth > 0.0 {
+            reversed.add(found / world.depth.view_distance(depth), 1.0, input);
+        }
+    }
+    there_and_back.check();
+    reversed.check();
+}
+
 #[test]
 fn halves_and_display_colours_are_those_of_the_cpu() {
     let inputs = inputs();
@@ -196,7 +225,7 @@ fn the_host_structs_are_the_shaders() {
     let module = Module::load(&format!("{MODULE}.spv")).unwrap();
     module.assert_bindings(&BINDINGS);
     let rows = |binding| module.block(0, binding).unwrap().member("rows").unwrap();
-    rows(0).assert_matches(&host_layout!(Input { direction, color }));
+    rows(0).assert_matches(&host_layout!(Input { direction, color, depth_coefficients }));
     rows(1).assert_matches(&host_layout!(Row {
         basis,
         equirect,
@@ -208,8 +237,8 @@ fn the_host_structs_are_the_shaders() {
         display,
         angle,
         encoded,
-        padding,
+        view_distance,
         decoded,
-        padding_2,
+        padding,
     }));
 }

@@ -4,6 +4,7 @@
 
 #define ORDER 6
 #include "common/cube.glsl"
+#include "common/depth.glsl"
 #include "common/equirect.glsl"
 #include "common/half.glsl"
 #include "common/sh_basis.glsl"
@@ -12,8 +13,9 @@
 layout(local_size_x = 64) in;
 
 struct Input {
-    vec4 direction; // unit; w unused
+    vec4 direction; // unit; w a depth value
     vec4 color; // linear RGB, not negative; w a number to halve
+    vec4 depth_coefficients;
 };
 
 layout(std430, set = 0, binding = 0) readonly buffer Inputs {
@@ -31,9 +33,9 @@ struct Result {
     vec3 display;
     float angle; // of (x, y)
     vec3 encoded;
-    float padding;
+    float view_distance;
     vec3 decoded;
-    float padding_2;
+    float padding;
 };
 
 layout(std430, set = 0, binding = 1) buffer Results {
@@ -57,6 +59,8 @@ void main()
     results.rows[i].cube_direction = normalize(cube_direction(uint(place.z), place.xy));
     results.rows[i].angle = angle_of(direction.y, direction.x);
     vec4 color = inputs.rows[i].color;
+    results.rows[i].view_distance =
+        depth_view_distance(inputs.rows[i].direction.w, inputs.rows[i].depth_coefficients);
     results.rows[i].half_bits = half_bits(color.w);
     vec3 display = tone_map(color.rgb);
     results.rows[i].display = display;
