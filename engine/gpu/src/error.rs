@@ -89,6 +89,11 @@ impl GpuError {
     pub fn is_device_lost(&self) -> bool {
         matches!(self, Self::Vulkan { result: vk::Result::ERROR_DEVICE_LOST, .. })
     }
+
+    /// True when a window's surface is lost: make another on the same window.
+    pub fn is_surface_lost(&self) -> bool {
+        matches!(self, Self::Vulkan { result: vk::Result::ERROR_SURFACE_LOST_KHR, .. })
+    }
 }
 
 fn list(missing: &[Missing]) -> String {

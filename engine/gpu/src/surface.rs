@@ -4,7 +4,7 @@ use crate::context::Context;
 use crate::error::GpuError;
 use crate::memory::{Image, Label};
 use crate::open::{FrameSemaphores, OpenDevice};
-use airglow_graph::ImageDesc;
+use airglow_graph::{ImageDesc, State};
 use ash::vk;
 use raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 use std::ffi::CStr;
@@ -22,24 +22,44 @@ pub fn instance_extensions(display: RawDisplayHandle) -> Result<Vec<&'static CSt
     Ok(names.iter().map(|&name| unsafe { CStr::from_ptr(name) }).collect())
 }
 
-/// A window's surface and its swapchain. Dropped before its context and device.
+/// The state in which a plan finds an acquired image: [`FrameSemaphores::wait`] holds back every stage, so that the
+/// first barrier must follow on from them all.
+pub const ACQUIRED: State = State { stage: vk::PipelineStageFlags2::ALL_COMMANDS, ..State::UNDEFINED };
+
+/// Replaced swapchains that are kept until they are no longer shown; for more, the device is waited for.
+const MOST_REPLACED: usize = 8;
+
+/// A window's surface and its swapchain. Dropped before its window, its context and its device.
+///
+/// The swapchain has 8-bit texels that hold sRGB-encoded values, in an order that [`Surface::desc`] tells.
 pub struct Surface<'d> {
     device: &'d OpenDevice,
     functions: ash::khr::surface::Instance,
     swapchains: ash::khr::swapchain::Device,
     surface: vk::SurfaceKHR,
+    /// Null while the window has no pixels.
     swapchain: vk::SwapchainKHR,
     images: Vec<Image>,
     /// One more than frames in flight, signalled when an image is there.
     acquired: Vec<vk::Semaphore>,
     /// One per image, signalled when it may be shown.
     rendered: Vec<vk::Semaphore>,
-    next: usize,
+    replaced: Vec<Replaced>,
+    /// Images acquired so far; modulo their number it finds the next semaphore.
+    acquires: u64,
 }
 
-/// An image of the swapchain to render to, and the semaphores around it.
+/// A swapchain that may still be shown.
+struct Replaced {
+    swapchain: vk::SwapchainKHR,
+    rendered: Vec<vk::Semaphore>,
+    /// It is gone from the screen when so many images have been acquired.
+    gone_at: u64,
+}
+
+/// An image of the swapchain to render to, and the semaphores around it. The image is for this frame only.
 pub struct SurfaceFrame {
-    /// The image, in layout `UNDEFINED`; to be left in [`airglow_graph::Access::Present`].
+    /// The image, in state [`ACQUIRED`]; to be left in [`airglow_graph::Access::Present`].
     pub image: Image,
     /// For [`crate::open::FrameLoop::frame`].
     pub semaphores: FrameSemaphores,
@@ -75,7 +95,8 @@ impl<'d> Surface<'d> {
             images: Vec::new(),
             acquired: Vec::new(),
             rendered: Vec::new(),
-            next: 0,
+            replaced: Vec::new(),
+            acquires: 0,
         };
         // SAFETY: live handles of one instance.
         let shows = unsafe {
@@ -97,13 +118,16 @@ impl<'d> Surface<'d> {
         Ok(this)
     }
 
-    /// Makes the swapchain again, after the window changed or [`Surface::acquire`] returned nothing. Waits for the
-    /// device: windows change seldom.
+    /// Makes the swapchain again, after the window changed or [`Surface::acquire`] returned nothing. The swapchain
+    /// before it lives on until it is no longer shown; nothing is waited for, unless many were replaced in a row.
+    ///
+    /// A window without pixels, such as a minimised one, has no swapchain: resize again when it has some.
     ///
     /// # Errors
-    /// [`GpuError::Vulkan`] if anything fails.
+    /// [`GpuError::Misuse`] if the window takes no 8-bit sRGB images or none that are copied to,
+    /// [`GpuError::is_surface_lost`] if the surface must be made again, other [`GpuError::Vulkan`] if anything else
+    /// fails.
     pub fn resize(&mut self, context: &Context, extent: [u32; 2]) -> Result<(), GpuError> {
-        self.device.wait_idle()?;
         let physical_device = self.device.physical_device();
         // SAFETY: live handles of one instance.
         let (capabilities, formats) = unsafe {
@@ -116,16 +140,17 @@ impl<'d> Surface<'d> {
                     .map_err(GpuError::vulkan("vkGetPhysicalDeviceSurfaceFormatsKHR"))?,
             )
         };
-        let srgb = |format: &&vk::SurfaceFormatKHR| {
-            matches!(format.format, vk::Format::B8G8R8A8_SRGB | vk::Format::R8G8B8A8_SRGB)
-        };
-        let Some(format) = formats.iter().find(srgb).or(formats.first()) else {
-            return Err(GpuError::misuse("the window", "the device offers no format to show"));
-        };
-        let [width, height] = chosen_extent(&capabilities, extent);
-        let most = if capabilities.max_image_count == 0 { u32::MAX } else { capabilities.max_image_count };
+        let format = chosen_format(&formats)?;
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_DST;
-        let old = self.swapchain;
+        if !capabilities.supported_usage_flags.contains(usage) {
+            let problem = "its images cannot be copied to; choose another device";
+            return Err(GpuError::misuse("the window", problem));
+        }
+        let [width, height] = chosen_extent(&capabilities, extent);
+        if width == 0 || height == 0 {
+            return self.replace(context, vk::SwapchainKHR::null(), Vec::new());
+        }
+        let most = if capabilities.max_image_count == 0 { u32::MAX } else { capabilities.max_image_count };
         let info = vk::SwapchainCreateInfoKHR::default()
             .surface(self.surface)
             .min_image_count((capabilities.min_image_count + 1).min(most))
@@ -138,27 +163,57 @@ impl<'d> Surface<'d> {
             .composite_alpha(vk::CompositeAlphaFlagsKHR::OPAQUE)
             .present_mode(vk::PresentModeKHR::FIFO)
             .clipped(true)
-            .old_swapchain(old);
-        // SAFETY: the device is idle, and the old swapchain is not used after this.
-        let raw = unsafe {
-            self.swapchain = self
-                .swapchains
-                .create_swapchain(&info, None)
-                .map_err(GpuError::vulkan("vkCreateSwapchainKHR"))?;
-            self.images.clear();
-            self.swapchains.destroy_swapchain(old, None);
-            self.swapchains
-                .get_swapchain_images(self.swapchain)
-                .map_err(GpuError::vulkan("vkGetSwapchainImagesKHR"))?
-        };
-        while self.rendered.len() < raw.len() {
-            self.rendered.push(self.semaphore()?);
-        }
+            .old_swapchain(self.swapchain);
+        // SAFETY: a live surface and device; the old swapchain gives no more images after this.
+        let swapchain = unsafe { self.swapchains.create_swapchain(&info, None) }
+            .map_err(GpuError::vulkan("vkCreateSwapchainKHR"))?;
+        // SAFETY: the swapchain just made.
+        let raw = unsafe { self.swapchains.get_swapchain_images(swapchain) };
         let desc = ImageDesc { usage, ..ImageDesc::new_2d(width, height, format.format) };
         let label = Label::new("surface", "swapchain");
-        // SAFETY: the images live until the swapchain is destroyed, after `images` is cleared on an idle device.
-        self.images = raw.into_iter().map(|raw| unsafe { context.import_image(raw, label, &desc) }).collect();
+        // SAFETY: the images live until the swapchain is destroyed, when the frames that used them are done.
+        let import = |raw| unsafe { context.import_image(raw, label, &desc) };
+        let images = raw.as_ref().map_or(Vec::new(), |raw| raw.iter().copied().map(import).collect());
+        self.replace(context, swapchain, images)?;
+        raw.map(|_| ()).map_err(GpuError::vulkan("vkGetSwapchainImagesKHR"))
+    }
+
+    /// Puts a swapchain in place of the one before.
+    fn replace(
+        &mut self,
+        context: &Context,
+        swapchain: vk::SwapchainKHR,
+        images: Vec<Image>,
+    ) -> Result<(), GpuError> {
+        // After one acquisition more than there are images, one image was acquired again: its own showing, and with it
+        // whatever was queued before, is over. That acquisition is known to be done when the frames in flight are.
+        let gone_at = self.acquires + images.len() as u64 + 1 + u64::from(context.frames_in_flight());
+        self.images = images;
+        let old = std::mem::replace(&mut self.swapchain, swapchain);
+        let rendered = std::mem::take(&mut self.rendered);
+        self.replaced.push(Replaced { swapchain: old, rendered, gone_at });
+        self.replaced.iter_mut().for_each(|replaced| replaced.gone_at = gone_at);
+        if self.replaced.len() > MOST_REPLACED {
+            self.device.wait_idle()?;
+            self.destroy_replaced(u64::MAX);
+        }
+        while self.rendered.len() < self.images.len() {
+            self.rendered.push(self.semaphore()?);
+        }
         Ok(())
+    }
+
+    /// Destroys what is gone when `acquires` images have been acquired.
+    fn destroy_replaced(&mut self, acquires: u64) {
+        for replaced in self.replaced.extract_if(.., |replaced| replaced.gone_at <= acquires) {
+            // SAFETY: its images and semaphores are no longer in use; see `replace`, or the device was waited for.
+            unsafe {
+                for semaphore in replaced.rendered {
+                    self.device.device().destroy_semaphore(semaphore, None);
+                }
+                self.swapchains.destroy_swapchain(replaced.swapchain, None);
+            }
+        }
     }
 
     /// What every image of the swapchain is.
@@ -166,12 +221,17 @@ impl<'d> Surface<'d> {
         self.images.first().map(Image::desc)
     }
 
-    /// The next image, or `None` when the swapchain no longer fits the window: [`Surface::resize`] and try again.
+    /// The next image, or `None` when the swapchain no longer fits the window or the window has no pixels:
+    /// [`Surface::resize`] and try again.
     ///
     /// # Errors
-    /// [`GpuError::Vulkan`] if anything else fails.
+    /// [`GpuError::is_surface_lost`] if the surface must be made again, other [`GpuError::Vulkan`] if anything else
+    /// fails.
     pub fn acquire(&mut self) -> Result<Option<SurfaceFrame>, GpuError> {
-        let wait = self.acquired[self.next];
+        if self.images.is_empty() {
+            return Ok(None);
+        }
+        let wait = self.acquired[(self.acquires % self.acquired.len() as u64) as usize];
         // SAFETY: the semaphore's last use was `frames_in_flight` + 1 frames ago, which the frame loop waited for.
         let acquired =
             unsafe { self.swapchains.acquire_next_image(self.swapchain, u64::MAX, wait, vk::Fence::null()) };
@@ -180,7 +240,8 @@ impl<'d> Surface<'d> {
             Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => return Ok(None),
             Err(result) => return Err(GpuError::Vulkan { call: "vkAcquireNextImageKHR", result }),
         };
-        self.next = (self.next + 1) % self.acquired.len();
+        self.acquires += 1;
+        self.destroy_replaced(self.acquires);
         let semaphores = FrameSemaphores { wait: Some(wait), signal: Some(self.rendered[index as usize]) };
         Ok(Some(SurfaceFrame { image: self.images[index as usize].clone(), semaphores, index }))
     }
@@ -188,7 +249,7 @@ impl<'d> Surface<'d> {
     /// Shows an image that was rendered in a submitted frame. False when the swapchain no longer fits the window.
     ///
     /// # Errors
-    /// [`GpuError::Vulkan`] if anything fails.
+    /// As [`Surface::acquire`].
     pub fn present(&mut self, frame: SurfaceFrame) -> Result<bool, GpuError> {
         let (swapchains, indices) = ([self.swapchain], [frame.index]);
         let waits = [self.rendered[frame.index as usize]];
@@ -212,6 +273,22 @@ impl<'d> Surface<'d> {
     }
 }
 
+/// 8-bit texels that hold sRGB-encoded values.
+fn chosen_format(formats: &[vk::SurfaceFormatKHR]) -> Result<vk::SurfaceFormatKHR, GpuError> {
+    use vk::Format;
+    const WANTED: [Format; 4] =
+        [Format::B8G8R8A8_SRGB, Format::R8G8B8A8_SRGB, Format::B8G8R8A8_UNORM, Format::R8G8B8A8_UNORM];
+    let offered = |format: &Format| {
+        let srgb = vk::ColorSpaceKHR::SRGB_NONLINEAR;
+        formats.iter().find(|offered| offered.format == *format && offered.color_space == srgb)
+    };
+    WANTED.iter().find_map(offered).copied().ok_or_else(|| {
+        let offered: Vec<_> = formats.iter().map(|offered| offered.format).collect();
+        let problem = format!("it takes {offered:?}, not the 8-bit sRGB expected; choose another device");
+        GpuError::misuse("the window", problem)
+    })
+}
+
 /// The window's own extent, or `wanted` within what it allows.
 fn chosen_extent(capabilities: &vk::SurfaceCapabilitiesKHR, wanted: [u32; 2]) -> [u32; 2] {
     let (low, high) = (capabilities.min_image_extent, capabilities.max_image_extent);
@@ -228,6 +305,7 @@ impl Drop for Surface<'_> {
         // A lost device has finished too.
         let _ = self.device.wait_idle();
         self.images.clear();
+        self.destroy_replaced(u64::MAX);
         // SAFETY: the device is idle; children go before the surface.
         unsafe {
             for &semaphore in self.acquired.iter().chain(&self.rendered) {

@@ -15,7 +15,7 @@ layout(std430, set = 0, binding = 1) buffer Linear {
     float values[];
 } linear_picture;
 
-// sRGB-encoded, one byte a channel, red lowest.
+// sRGB-encoded, one byte a channel, red lowest unless the settings say otherwise.
 layout(std430, set = 0, binding = 2) buffer Display {
     uint values[];
 } display_picture;
@@ -26,6 +26,7 @@ layout(push_constant) uniform Settings {
     float exposure;
     uint column;     // of the picture, where the view begins
     uint row_length; // pixels of a row of the picture
+    uint blue_first; // 1 where blue is to be the lowest byte, as most windows want it
 } settings;
 
 void main()
@@ -46,5 +47,6 @@ void main()
     linear_picture.values[3u * at] = sum.r * weight;
     linear_picture.values[3u * at + 1u] = sum.g * weight;
     linear_picture.values[3u * at + 2u] = sum.b * weight;
-    display_picture.values[at] = packUnorm4x8(vec4(srgb_encode(shown * weight), 1.0));
+    vec3 encoded = srgb_encode(shown * weight);
+    display_picture.values[at] = packUnorm4x8(vec4(settings.blue_first == 1u ? encoded.bgr : encoded, 1.0));
 }

@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::commands::{bake, compare, devices};
 #[cfg(feature = "relight")]
-use crate::commands::{eval, explain, plan, render, report, stability};
+use crate::commands::{eval, explain, plan, render, report, show, stability};
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -57,6 +57,8 @@ pub enum Command {
     Bake(bake::Arguments),
     #[cfg(feature = "relight")]
     Render(render::Arguments),
+    #[cfg(feature = "relight")]
+    Show(show::Arguments),
     Compare(compare::Arguments),
     #[cfg(feature = "relight")]
     Plan(plan::Arguments),

@@ -17,6 +17,8 @@ mod files;
 mod host;
 mod output;
 mod report;
+#[cfg(feature = "relight")]
+mod window;
 
 use std::process::ExitCode;
 

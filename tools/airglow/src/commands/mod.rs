@@ -15,6 +15,8 @@ pub mod render;
 pub mod report;
 pub mod scene;
 #[cfg(feature = "relight")]
+pub mod show;
+#[cfg(feature = "relight")]
 pub mod stability;
 
 use crate::cli::{Cli, Command};
@@ -29,6 +31,8 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Bake(arguments) => bake::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Render(arguments) => render::run(&arguments, global, output),
+        #[cfg(feature = "relight")]
+        Command::Show(arguments) => show::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Plan(arguments) => plan::run(&arguments, global, output),

@@ -67,6 +67,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         turn: DQuat::IDENTITY,
         spin: 0.0,
         without_relight: without,
+        window: None,
     };
     let requirements = whole.as_ref().unwrap_or(&source).requirements(&scene);
     let text = device::with(global, &requirements, |device| {

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use airglow_gpu::{PassTime, TimingSummary};
+use airglow_scene::Scene;
 use airglow_scene::image_io::{write_exr, write_png_bytes};
-use airglow_scene::{Exposure, Scene};
 use clap::{Args, ValueEnum};
 use glam::DQuat;
 use serde::Serialize;
@@ -107,8 +108,9 @@ struct Stat {
     memory: Vec<MemoryStat>,
 }
 
+/// Device time of a pass.
 #[derive(Serialize)]
-struct PassStat {
+pub struct PassStat {
     name: String,
     median_ms: f64,
     /// 5th and 95th percentile of the frames.
@@ -136,7 +138,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
         let mut settings = settings(arguments);
         let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
-        settings.exposure = exposure(arguments, &scene, &mut renderer, &settings)?;
+        settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let mut picture = renderer.draw(&settings, arguments.frames as usize)?;
         if arguments.split {
             picture.replace_left_half(&renderer.draw(&Settings { without_relight: true, ..settings }, 1)?);
@@ -165,23 +167,7 @@ fn settings(arguments: &Arguments) -> Settings {
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
         without_relight: arguments.leaves_out_relight(),
-    }
-}
-
-/// As asked for, or as the scene file says; automatic exposure looks at one frame first.
-fn exposure(
-    arguments: &Arguments,
-    scene: &Scene,
-    renderer: &mut Renderer<'_>,
-    settings: &Settings,
-) -> Outcome<f32> {
-    match (arguments.exposure, scene.exposure) {
-        (Some(factor), _) if factor > 0.0 && factor.is_finite() => Ok(factor),
-        (Some(factor), _) => {
-            Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")))
-        }
-        (None, Exposure::Fixed { scale }) => Ok(scale),
-        (None, automatic) => Ok(automatic.scale(&renderer.draw(settings, 1)?.linear.pixels)),
+        window: None,
     }
 }
 
@@ -213,15 +199,7 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
         height: settings.picture_size()[1],
         frames: timing.map_or(0, |timing| timing.frames),
         exposure: settings.exposure,
-        passes: timing.map_or(Vec::new(), |timing| {
-            let pass = |pass: &airglow_gpu::PassTime| PassStat {
-                name: pass.name.clone(),
-                median_ms: 1e3 * pass.median,
-                p5_ms: 1e3 * pass.p5,
-                p95_ms: 1e3 * pass.p95,
-            };
-            timing.passes.iter().map(pass).collect()
-        }),
+        passes: pass_stats(timing),
         span_ms: timing.map(|timing| 1e3 * timing.span),
         sum_ms: timing.map(|timing| 1e3 * timing.sum),
         record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
@@ -234,12 +212,28 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
     }
 }
 
+/// The passes of some frames; none with too few.
+pub fn pass_stats(timing: Option<&TimingSummary>) -> Vec<PassStat> {
+    let pass = |pass: &PassTime| PassStat {
+        name: pass.name.clone(),
+        median_ms: 1e3 * pass.median,
+        p5_ms: 1e3 * pass.p5,
+        p95_ms: 1e3 * pass.p95,
+    };
+    timing.map_or(Vec::new(), |timing| timing.passes.iter().map(pass).collect())
+}
+
+impl PassStat {
+    /// The pass as a line of text.
+    pub fn line(&self) -> String {
+        let Self { name, median_ms, p5_ms, p95_ms } = self;
+        format!("  {name:32} {median_ms:9.3} ms  ({p5_ms:.3} to {p95_ms:.3})\n")
+    }
+}
+
 fn text(stat: &Stat) -> String {
     let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
-    for pass in &stat.passes {
-        let PassStat { name, median_ms, p5_ms, p95_ms } = pass;
-        text.push_str(&format!("  {name:32} {median_ms:9.3} ms  ({p5_ms:.3} to {p95_ms:.3})\n"));
-    }
+    text.extend(stat.passes.iter().map(PassStat::line));
     match (stat.span_ms, stat.sum_ms) {
         (Some(span), Some(sum)) => {
             text.push_str(&format!(
@@ -271,7 +265,7 @@ fn write(path: &Path, picture: &Picture) -> Outcome {
 }
 
 /// `WIDTHxHEIGHT`.
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=8192).contains(side));
     let parsed = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
     parsed.ok_or_else(|| format!("`{text}` is no size; write it like 1280x720, sides from 1 to 8192"))

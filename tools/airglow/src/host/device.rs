@@ -1,10 +1,15 @@
 //! The host's device: opened here, then handed to the library by the road that any engine takes.
 
+use std::ffi::CStr;
+
 use airglow_gpu::ash::vk;
 use airglow_gpu::open::{
     DeviceKind, DeviceLine, FrameLoop, FrameSemaphores, OpenDevice, OpenOptions, Selector,
 };
-use airglow_gpu::{Context, Execution, GpuError, Imports, Recorder, Requirements, Timing};
+use airglow_gpu::surface::{DEVICE_EXTENSIONS, Surface};
+use airglow_gpu::{Context, Execution, GpuError, Imports, Recorded, Recorder, Requirements, Timing};
+
+use winit::raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
 use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
@@ -29,9 +34,32 @@ pub fn with<R>(
     requirements: &Requirements,
     work: impl FnOnce(&Device<'_>) -> Outcome<R>,
 ) -> Outcome<R> {
+    with_options(global, OpenOptions::new(requirements), work)
+}
+
+/// The same with a device that can show on windows, whose display needs these instance extensions.
+pub fn with_window<R>(
+    global: &Global,
+    requirements: &Requirements,
+    instance_extensions: &[&CStr],
+    work: impl FnOnce(&Device<'_>) -> Outcome<R>,
+) -> Outcome<R> {
+    let device_extensions = DEVICE_EXTENSIONS;
+    with_options(
+        global,
+        OpenOptions { instance_extensions, device_extensions, ..OpenOptions::new(requirements) },
+        work,
+    )
+}
+
+fn with_options<R>(
+    global: &Global,
+    options: OpenOptions<'_>,
+    work: impl FnOnce(&Device<'_>) -> Outcome<R>,
+) -> Outcome<R> {
     let selector = global.device.as_deref().map_or(Ok(Selector::Best), str::parse);
     let Ok(selector) = selector;
-    let options = OpenOptions { selector, validation: global.validate, ..OpenOptions::new(requirements) };
+    let options = OpenOptions { selector, validation: global.validate, ..options };
     let open = OpenDevice::open(&options).map_err(Failure::device)?;
     let log = open.messages();
     let result = {
@@ -68,6 +96,45 @@ impl Device<'_> {
         self.open.run(self.context, record)
     }
 
+    /// What submits frames one after another.
+    pub fn frame_loop(&self) -> Outcome<FrameLoop<'_>> {
+        FrameLoop::new(self.open, self.context).map_err(Failure::work)
+    }
+
+    /// Records a plan and submits it as the next frame; waits only for the frame that used its place before.
+    pub fn frame(
+        &self,
+        frames: &mut FrameLoop<'_>,
+        semaphores: FrameSemaphores,
+        execution: &mut Execution,
+        imports: &Imports,
+        timing: Option<&mut Timing>,
+    ) -> Outcome<Recorded> {
+        let recorded = frames.frame(semaphores, |command_buffer| {
+            // SAFETY: the loop's command buffer is recording and submitted once, in this frame; imports are in
+            // their entry states, since uploads are done and every plan leaves them in its exit states, which
+            // are the entry states, and an image of a window was just acquired; all recordings go to one queue in
+            // order; passes use what they declared.
+            unsafe { execution.record(self.context, command_buffer, imports, timing) }
+        });
+        recorded.map_err(Failure::work)
+    }
+
+    /// A surface on a window, which must be dropped before it.
+    ///
+    /// # Safety
+    /// The handles are a live window's, which outlives the surface; the device was opened by [`with_window`] for its
+    /// display.
+    pub unsafe fn surface(
+        &self,
+        display: RawDisplayHandle,
+        window: RawWindowHandle,
+        extent: [u32; 2],
+    ) -> Result<Surface<'_>, GpuError> {
+        // SAFETY: the caller vouches for the window; the context is this device's.
+        unsafe { Surface::new(self.open, self.context, display, window, extent) }
+    }
+
     /// Records and submits a plan `count` times, calling `before` ahead of each, and waits for all of them. Returns
     /// the CPU milliseconds of each recording.
     pub fn frames(
@@ -79,17 +146,13 @@ impl Device<'_> {
         mut before: impl FnMut(usize) -> Outcome,
     ) -> Outcome<Vec<f64>> {
         let mut timing = timing;
-        let mut frames = FrameLoop::new(self.open, self.context).map_err(Failure::work)?;
+        let mut frames = self.frame_loop()?;
         let mut cpu = Vec::with_capacity(count);
         for frame in 0..count {
             before(frame)?;
-            let recorded = frames.frame(FrameSemaphores::default(), |command_buffer| {
-                // SAFETY: the loop's command buffer is recording and submitted once, in this frame; imports are in
-                // their entry states, since uploads are done and every plan leaves them in its exit states, which
-                // are the entry states; all recordings go to one queue in order; passes use what they declared.
-                unsafe { execution.record(self.context, command_buffer, imports, timing.as_deref_mut()) }
-            });
-            cpu.push(1e3 * recorded.map_err(Failure::work)?.cpu.as_secs_f64());
+            let semaphores = FrameSemaphores::default();
+            let recorded = self.frame(&mut frames, semaphores, execution, imports, timing.as_deref_mut());
+            cpu.push(1e3 * recorded?.cpu.as_secs_f64());
         }
         frames.finish().map_err(Failure::work)?;
         if let Some(timing) = timing {

@@ -40,7 +40,7 @@ pub struct VertexColours {
 pub struct Developed {
     /// Scene-linear RGB, three f32 a pixel.
     pub linear: Handle<Buffer>,
-    /// sRGB, one u32 a pixel, red lowest.
+    /// sRGB, one u32 a pixel, red lowest unless asked for otherwise.
     pub display: Handle<Buffer>,
 }
 
@@ -55,6 +55,17 @@ pub struct Region {
     pub row_length: u32,
 }
 
+/// From samples to pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Development {
+    /// Along each side of a pixel.
+    pub samples: u32,
+    /// Factor from scene-linear values to the display.
+    pub exposure: f32,
+    /// Whether blue is the lowest byte of a pixel for the display.
+    pub blue_first: bool,
+}
+
 /// `Settings` of `host/develop.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -64,6 +75,7 @@ struct DevelopConstants {
     exposure: f32,
     column: u32,
     row_length: u32,
+    blue_first: u32,
 }
 
 impl Pipelines {
@@ -138,16 +150,15 @@ impl Pipelines {
         hdr
     }
 
-    /// Develops the HDR target of a view into its region of two buffers of the host's: `samples` by `samples` texels
-    /// make a pixel. Returns the buffers with it in them.
+    /// Develops the HDR target of a view into its region of two buffers of the host's. Returns the buffers with it in
+    /// them.
     pub fn develop(
         &self,
         graph: &mut Graph<Record>,
         hdr: Handle<Image>,
         buffers: Developed,
         region: Region,
-        samples: u32,
-        exposure: f32,
+        development: Development,
     ) -> Developed {
         let mut pass = graph.pass("tone map", PassKind::Compute);
         pass.read(&hdr, Access::ComputeSampled);
@@ -164,11 +175,30 @@ impl Pipelines {
                 ],
             )?;
             let Region { size, column, row_length } = region;
-            recorder.push_constants(&DevelopConstants { size, samples, exposure, column, row_length })?;
+            let Development { samples, exposure, blue_first } = development;
+            let blue_first = blue_first.into();
+            recorder.push_constants(&DevelopConstants {
+                size,
+                samples,
+                exposure,
+                column,
+                row_length,
+                blue_first,
+            })?;
             recorder.dispatch([size[0].div_ceil(8), size[1].div_ceil(8), 1])
         }));
         Developed { linear, display }
     }
+}
+
+/// Copies the developed picture, pixel for pixel, to an image of a window's.
+pub fn show(graph: &mut Graph<Record>, picture: Handle<Buffer>, window: Handle<Image>) {
+    let mut pass = graph.pass("show", PassKind::Transfer);
+    pass.read(&picture, Access::TransferSource);
+    let window = pass.write(window, Access::TransferDestination);
+    pass.record(Box::new(move |recorder, resources| {
+        recorder.copy_buffer_to_image(resources.buffer(&picture)?, &resources.view(&window)?)
+    }));
 }
 
 fn record_draw(

@@ -1,10 +1,10 @@
 //! One frame, top to bottom, in the order light travels.
 
 use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
-use airglow_gpu::{Imports, Record};
-use airglow_graph::{Access, Graph};
+use airglow_gpu::{Imports, Record, surface};
+use airglow_graph::{Access, Graph, Handle, Image};
 
-use super::draw::{Developed, Region, VertexColours};
+use super::draw::{self, Developed, Development, Region, VertexColours};
 use super::lighting::{Lighting, Reason, left_out, no_environment};
 use super::renderer::{Renderer, Settings};
 use super::view::SharedView;
@@ -26,9 +26,12 @@ pub struct Turning {
     pub rotations: Option<Rotations>,
     /// The views, which turn with the light.
     pub views: Vec<SharedView>,
+    /// The image of the window, another one in each frame; `None` without a window.
+    pub window: Option<Handle<Image>>,
 }
 
-/// Declares a frame: environment -> light of the vertices -> the scene in each view -> picture.
+/// Declares a frame: environment -> light of the vertices -> the scene in each view -> picture -> window, if there is
+/// one.
 pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Declared> {
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
     renderer.unread.iter().cloned().for_each(|left_out| graph.leave_out(left_out));
@@ -110,10 +113,18 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         linear: picture("linear picture", &renderer.linear),
         display: picture("display picture", &renderer.display),
     };
+    let development = Development { samples, exposure: settings.exposure, blue_first: settings.blue_first() };
     for (column, hdr) in (0..).step_by(settings.size[0] as usize).zip(drawn) {
         let region = Region { size: settings.size, column, row_length: settings.picture_size()[0] };
-        developed = pipelines.develop(&mut graph, hdr, developed, region, samples, settings.exposure);
+        developed = pipelines.develop(&mut graph, hdr, developed, region, development);
     }
 
-    Ok(Declared { graph, imports, turning: Turning { rotations, views } })
+    // A window shows a copy of it.
+    let window = settings.window.map(|desc| {
+        let image = graph.import_image("window", desc, surface::ACQUIRED, Access::Present);
+        draw::show(&mut graph, developed.display, image);
+        image
+    });
+
+    Ok(Declared { graph, imports, turning: Turning { rotations, views, window } })
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Buffer, Execution, Label, Location, Timing, TimingSummary};
-use airglow_graph::{BufferDesc, LeftOut, Plan};
-use airglow_scene::{Camera, FloatImage, Scene};
+use airglow_graph::{BufferDesc, ImageDesc, LeftOut, Plan};
+use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
 
 use super::device::Device;
@@ -64,9 +64,18 @@ pub struct Settings {
     pub spin: f64,
     /// Leaves the relight pass out of the frame, though it is there: ambient light only.
     pub without_relight: bool,
+    /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
+    /// order of their channels.
+    pub window: Option<ImageDesc>,
 }
 
 impl Settings {
+    /// Whether blue is the lowest byte of a pixel for the display.
+    pub(super) fn blue_first(&self) -> bool {
+        let blue_first = [vk::Format::B8G8R8A8_SRGB, vk::Format::B8G8R8A8_UNORM];
+        self.window.is_some_and(|window| blue_first.contains(&window.format))
+    }
+
     /// Pixels of the picture.
     pub fn picture_size(&self) -> [u32; 2] {
         [self.views * self.size[0], self.size[1]]
@@ -111,19 +120,13 @@ impl<'d> Renderer<'d> {
             }
             None => [0.0; 3],
         };
-        let pixels = u64::from(picture[0]) * u64::from(picture[1]);
-        let target = |name, bytes| {
-            let desc = BufferDesc { size: bytes * pixels, usage: vk::BufferUsageFlags::STORAGE_BUFFER };
-            context
-                .create_buffer(Label::new(upload::OWNER, name), &desc, Location::Readback)
-                .map_err(Failure::work)
-        };
         let hdr = vk::Format::R32G32B32A32_SFLOAT;
         if !device.renders(hdr) {
             return Err(Failure::device(format!(
                 "the device cannot render to {hdr:?}; choose another with --device"
             )));
         }
+        let [linear, display] = targets(device, picture)?;
         Ok(Self {
             device,
             scene: Arc::new(device_scene),
@@ -139,9 +142,32 @@ impl<'d> Renderer<'d> {
             unread: unread::unread(scene),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
-            linear: target("linear picture", 12)?,
-            display: target("display picture", 4)?,
+            linear,
+            display,
         })
+    }
+
+    /// Makes a target of another size; frames declared before keep theirs.
+    pub fn resize(&mut self, picture: [u32; 2]) -> Outcome {
+        [self.linear, self.display] = targets(self.device, picture)?;
+        Ok(())
+    }
+
+    /// Looks through another camera from the next turn on.
+    pub fn look(&mut self, camera: Camera) {
+        self.camera = camera;
+    }
+
+    /// The exposure asked for, or as the scene file says; automatic exposure looks at one frame first.
+    pub fn exposure(&mut self, asked: Option<f32>, of_scene: Exposure, settings: &Settings) -> Outcome<f32> {
+        match (asked, of_scene) {
+            (Some(factor), _) if factor > 0.0 && factor.is_finite() => Ok(factor),
+            (Some(factor), _) => {
+                Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")))
+            }
+            (None, Exposure::Fixed { scale }) => Ok(scale),
+            (None, automatic) => Ok(automatic.scale(&self.draw(settings, 1)?.linear.pixels)),
+        }
     }
 
     /// The cameras' views, from left to right, with the environment turned by `turn`.
@@ -154,7 +180,7 @@ impl<'d> Renderer<'d> {
     }
 
     /// Turns the light and the sky of a declared frame; its plan stays.
-    fn turn(&self, turning: &Turning, settings: &Settings, turn: DQuat) -> Outcome {
+    pub fn turn(&self, turning: &Turning, settings: &Settings, turn: DQuat) -> Outcome {
         for (shared, view) in turning.views.iter().zip(self.views(settings, turn)) {
             shared.set(view);
         }
@@ -212,4 +238,18 @@ impl<'d> Renderer<'d> {
             cpu_milliseconds,
         })
     }
+}
+
+/// Buffers for a picture, scene-linear and for the display.
+fn targets(device: &Device<'_>, picture: [u32; 2]) -> Outcome<[Buffer; 2]> {
+    let pixels = u64::from(picture[0]) * u64::from(picture[1]);
+    let target = |name, bytes, usage| {
+        let desc = BufferDesc { size: bytes * pixels, usage: vk::BufferUsageFlags::STORAGE_BUFFER | usage };
+        let label = Label::new(upload::OWNER, name);
+        device.context().create_buffer(label, &desc, Location::Readback).map_err(Failure::work)
+    };
+    Ok([
+        target("linear picture", 12, vk::BufferUsageFlags::empty())?,
+        target("display picture", 4, vk::BufferUsageFlags::TRANSFER_SRC)?,
+    ])
 }

@@ -1,0 +1,117 @@
+//! `airglow show`: a scene, live, in a window.
+
+use clap::Args;
+use glam::{DQuat, Vec3};
+use serde::Serialize;
+
+use crate::cli::Global;
+use crate::commands::render::{PassStat, pass_stats, size};
+use crate::commands::scene::SceneOptions;
+use crate::failure::{Failure, Outcome};
+use crate::host::device;
+use crate::host::lighting::Source;
+use crate::host::renderer::{Renderer, Settings};
+use crate::output::Output;
+use crate::report::model::Machine;
+use crate::window::controls;
+use crate::window::viewer::{Show, Shown, Viewer};
+use crate::window::{event_loop, instance_extensions};
+
+/// Show a scene in a window: the frames of `airglow render`, live.
+///
+/// What the scene needs is baked first, or read from the cache. The light turns; the mouse moves the camera and the
+/// light. The title tells frames a second and the device time of each pass.
+#[derive(Debug, Args)]
+#[command(after_help = format!("{}\n\nExamples:
+  airglow show assets/scenes/spot.toml
+  airglow show assets/scenes/demo.toml --size 1920x1080 --spin 0
+  airglow show assets/scenes/spot.toml --frames 300 --json", controls::HELP))]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// Pixels of the window at first.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "960x540", value_parser = size)]
+    size: [u32; 2],
+    /// Samples along each side of a pixel.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
+    samples: u32,
+    /// Quit after so many frames.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
+    /// Turn the environment about the vertical axis to start with, degrees, counter-clockwise seen from above.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
+    turn: f64,
+    /// Turn it further by so many degrees in each second.
+    #[arg(long, value_name = "DEGREES", default_value_t = 20.0, allow_hyphen_values = true)]
+    spin: f64,
+    /// Factor from scene-linear values to the display to start with, instead of the scene file's.
+    #[arg(long, value_name = "FACTOR")]
+    exposure: Option<f32>,
+}
+
+/// What was shown, as `--json` prints it.
+#[derive(Serialize)]
+struct Stat {
+    machine: Machine,
+    frames: u32,
+    frames_per_second: Option<f64>,
+    /// Medians over the last frames.
+    passes: Vec<PassStat>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
+    // Without a display nothing is baked.
+    let event_loop = event_loop()?;
+    let extensions = instance_extensions(&event_loop)?;
+    let scene = arguments.scene.load(output)?;
+    let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
+    let stat = device::with_window(global, &source.requirements(&scene), &extensions, |device| {
+        let mut start = settings(arguments);
+        let mut renderer = Renderer::new(device, &scene, &source, start.picture_size())?;
+        start.exposure = renderer.exposure(arguments.exposure, scene.exposure, &start)?;
+        let show = Show {
+            title: arguments.scene.scene.display().to_string(),
+            camera: scene.camera(),
+            center: scene.bounding_sphere().map_or(Vec3::ZERO, |sphere| sphere.center.into()),
+            start,
+            spin: arguments.spin.to_radians(),
+            frames: arguments.frames,
+        };
+        let mut viewer = Viewer::new(device, renderer, show)?;
+        event_loop.run_app(&mut viewer).map_err(Failure::work)?;
+        Ok(stat(device.machine(), viewer.finish()?))
+    })?;
+    output.result(&stat, text)
+}
+
+fn settings(arguments: &Arguments) -> Settings {
+    Settings {
+        size: arguments.size,
+        views: 1,
+        samples: arguments.samples,
+        exposure: 1.0,
+        turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
+        spin: 0.0,
+        without_relight: false,
+        window: None,
+    }
+}
+
+fn stat(machine: Machine, shown: Shown) -> Stat {
+    let Shown { frames, seconds, timing } = shown;
+    Stat {
+        machine,
+        frames,
+        frames_per_second: (frames > 1).then(|| f64::from(frames - 1) / seconds),
+        passes: pass_stats(timing.as_ref()),
+    }
+}
+
+fn text(stat: &Stat) -> String {
+    let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
+    text.extend(stat.passes.iter().map(PassStat::line));
+    let rate = stat.frames_per_second.map_or(String::new(), |rate| format!(", {rate:.1} a second"));
+    text.push_str(&format!("  {} frames shown{rate}\n", stat.frames));
+    text
+}

@@ -1,0 +1,55 @@
+//! The window of `airglow show`: the frames of `host`, live, and what mouse and keys change in them.
+//!
+//! `controls` turns input into a camera, a turn of the light and an exposure; `surface` holds the window and its
+//! swapchain; `viewer` draws frame after frame.
+
+pub mod controls;
+mod surface;
+pub mod viewer;
+
+use std::ffi::CStr;
+
+use winit::event_loop::EventLoop;
+use winit::raw_window_handle::HasDisplayHandle;
+
+use crate::failure::{Failure, Outcome};
+
+/// What to do where no window can be had.
+const MEND: &str =
+    "start it within a desktop session, or draw to a file: airglow render SCENE -o picture.png";
+
+/// The connection to the display, before anything else is worked on.
+pub fn event_loop() -> Outcome<EventLoop<()>> {
+    check_keyboard_library()?;
+    EventLoop::new().map_err(|error| {
+        // winit's message begins with the place in its own source.
+        let text = error.to_string();
+        let why = text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+        no_window(why.map_or(&*text, |(_, why)| why.trim_end_matches('.')))
+    })
+}
+
+/// Instance extensions that windows on this display need.
+pub fn instance_extensions(event_loop: &EventLoop<()>) -> Outcome<Vec<&'static CStr>> {
+    let display = event_loop.display_handle().map_err(no_window)?;
+    airglow_gpu::surface::instance_extensions(display.as_raw()).map_err(no_window)
+}
+
+fn no_window(why: impl std::fmt::Display) -> Failure {
+    Failure::work(format!("no window can be opened: {why}; {MEND}"))
+}
+
+/// winit panics where X11's keyboard library is missing.
+#[cfg(all(unix, not(target_os = "macos")))]
+fn check_keyboard_library() -> Outcome {
+    let x11 = std::env::var_os("DISPLAY").is_some_and(|display| !display.is_empty());
+    if x11 && xkbcommon_dl::x11::xkbcommon_x11_option().is_none() {
+        return Err(no_window("libxkbcommon-x11.so.0 is missing (Debian: install libxkbcommon-x11-0)"));
+    }
+    Ok(())
+}
+
+#[cfg(not(all(unix, not(target_os = "macos"))))]
+fn check_keyboard_library() -> Outcome {
+    Ok(())
+}
