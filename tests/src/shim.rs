@@ -35,7 +35,9 @@ pub const STATE: [&str; 7] = [
     "vkCmdSetScissor",
 ];
 /// Commands that act at once and leave no state.
-pub const ACTIONS: [&str; 17] = [
+pub const ACTIONS: [&str; 19] = [
+    "vkCmdBeginQuery",
+    "vkCmdEndQuery",
     "vkCmdBeginRendering",
     "vkCmdEndRendering",
     "vkCmdBeginDebugUtilsLabelEXT",

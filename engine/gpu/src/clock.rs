@@ -25,10 +25,13 @@ impl Clock {
     /// Turns begin and end of each pass into times.
     pub(crate) fn fill(&self, results: &[[u64; 2]], times: &mut FrameTimes) {
         let pairs = || results.chunks_exact(2).map(|pair| (pair[0][0], pair[1][0]));
+        let start = results.first().map_or(0, |first| first[0] & self.mask);
+        times.start = start;
         times.passes.clear();
         times.passes.extend(pairs().map(|(begin, end)| self.seconds(begin, end)));
+        times.begins.clear();
+        times.begins.extend(pairs().map(|(begin, _)| self.seconds(start, begin)));
         times.sum = times.passes.iter().sum();
-        let start = results.first().map_or(0, |first| first[0]);
         times.span = pairs().map(|(_, end)| self.seconds(start, end)).fold(0.0, f64::max);
     }
 }
@@ -55,11 +58,13 @@ mod tests {
         let clock = Clock { mask: mask(36), period: 1e-9 };
         let near_end = (1 << 36) - 100;
         let results = [[near_end, 1], [900, 1], [400, 1], [1400, 1]];
-        let mut times = FrameTimes { frame: 0, passes: Vec::new(), span: 0.0, sum: 0.0 };
+        let mut times = FrameTimes::default();
         clock.fill(&results, &mut times);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} against {b}");
         near(times.passes[0], 1000e-9);
         near(times.passes[1], 1000e-9);
+        near(times.begins[1], 500e-9);
+        assert_eq!((times.start, times.begins[0]), (near_end, 0.0));
         near(times.sum, 2000e-9);
         near(times.span, 1500e-9);
         near(clock.seconds(500, 499), 0.0);

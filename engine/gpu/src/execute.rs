@@ -2,6 +2,7 @@
 
 use crate::allocator::Location;
 use crate::context::Context;
+use crate::counts::Counts;
 use crate::error::GpuError;
 use crate::memory::{Buffer, Image, Label};
 use crate::recorder::Recorder;
@@ -30,6 +31,8 @@ pub struct Recorded {
 pub struct Execution {
     plan: Plan<Record>,
     transients: Vec<Option<Concrete>>,
+    /// What each step did when it was recorded last.
+    counts: Vec<Counts>,
     /// Scratch, kept so that a frame allocates nothing.
     buffer_barriers: Vec<vk::BufferMemoryBarrier2<'static>>,
     image_barriers: Vec<vk::ImageMemoryBarrier2<'static>>,
@@ -55,12 +58,20 @@ impl Execution {
         };
         let buffer_barriers = Vec::with_capacity(most(|barriers| barriers.buffers.len()));
         let image_barriers = Vec::with_capacity(most(|barriers| barriers.images.len()));
-        Ok(Self { plan, transients, buffer_barriers, image_barriers })
+        let memory = (0..plan.steps().len()).map(|step| plan.step_bytes(step));
+        let counts = memory.map(|memory_bytes| Counts { memory_bytes, ..Counts::default() }).collect();
+        Ok(Self { plan, transients, counts, buffer_barriers, image_barriers })
     }
 
     /// The plan.
     pub fn plan(&self) -> &Plan<Record> {
         &self.plan
+    }
+
+    /// What each pass did when the plan was recorded last, in the plan's order; before that only its
+    /// memory is known.
+    pub fn counts(&self) -> &[Counts] {
+        &self.counts
     }
 
     /// Records the plan into `command_buffer`: acquires, each pass behind its barriers and under its label, final
@@ -83,7 +94,7 @@ impl Execution {
         imports: &Imports,
         mut timing: Option<&mut Timing>,
     ) -> Result<Recorded, GpuError> {
-        let Self { plan, transients, buffer_barriers, image_barriers } = self;
+        let Self { plan, transients, counts, buffer_barriers, image_barriers } = self;
         check_imports(context, plan, imports)?;
         let resources = Resources { plan, transients, imports };
         // SAFETY: the caller vouches for the command buffer.
@@ -104,8 +115,14 @@ impl Execution {
             }
             barriers(&step.barriers)?;
             recorder.labelled(&step.name, |recorder| {
+                recorder.counts = Counts {
+                    barriers: step.barriers.len() as u64,
+                    memory_bytes: counts[index].memory_bytes,
+                    ..Counts::default()
+                };
                 let passed = (step.payload)(recorder, &resources);
                 let ended = recorder.end_pass();
+                counts[index] = recorder.counts;
                 if let Some(timing) = timing.as_deref_mut() {
                     timing.end_pass(command_buffer, index);
                 }

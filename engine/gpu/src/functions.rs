@@ -6,6 +6,7 @@
 //! ash replaces a null pointer by a stub that panics when called. Every function this library calls is
 //! therefore asked for by name first, and a null one is an error that names it.
 
+use crate::calibration;
 use crate::context::AdoptInfo;
 use crate::error::GpuError;
 use ash::vk;
@@ -27,6 +28,7 @@ pub(crate) const DEVICE: &[&CStr] = &[
     c"vkAllocateMemory",
     c"vkBindBufferMemory",
     c"vkBindImageMemory",
+    c"vkCmdBeginQuery",
     c"vkCmdBeginRendering",
     c"vkCmdBindDescriptorSets",
     c"vkCmdBindIndexBuffer",
@@ -41,6 +43,7 @@ pub(crate) const DEVICE: &[&CStr] = &[
     c"vkCmdDrawIndexed",
     c"vkCmdDrawIndexedIndirect",
     c"vkCmdDrawIndirect",
+    c"vkCmdEndQuery",
     c"vkCmdEndRendering",
     c"vkCmdFillBuffer",
     c"vkCmdPipelineBarrier2",
@@ -84,12 +87,17 @@ pub(crate) const DEVICE: &[&CStr] = &[
 const DEBUG: &[&CStr] =
     &[c"vkSetDebugUtilsObjectNameEXT", c"vkCmdBeginDebugUtilsLabelEXT", c"vkCmdEndDebugUtilsLabelEXT"];
 
+/// The function of VK_KHR_calibrated_timestamps; VK_EXT_calibrated_timestamps has it by its name from before.
+const CALIBRATED: &[&CStr] = &[c"vkGetCalibratedTimestampsKHR"];
+
 /// The tables of one device.
 pub(crate) struct Functions {
     pub instance: ash::Instance,
     pub device: ash::Device,
     /// Present when VK_EXT_debug_utils is enabled.
     pub debug: Option<ash::ext::debug_utils::DeviceFn>,
+    /// Present when an extension for calibrated timestamps is enabled.
+    pub calibrated_timestamps: Option<vk::PFN_vkGetCalibratedTimestampsKHR>,
 }
 
 /// A function's address, or null.
@@ -102,6 +110,7 @@ const PROMOTED: &[(&CStr, &CStr)] = &[
     (c"vkCmdPipelineBarrier2", c"vkCmdPipelineBarrier2KHR"),
     (c"vkCmdWriteTimestamp2", c"vkCmdWriteTimestamp2KHR"),
     (c"vkGetPhysicalDeviceProperties2", c"vkGetPhysicalDeviceProperties2KHR"),
+    (c"vkGetCalibratedTimestampsKHR", c"vkGetCalibratedTimestampsEXT"),
 ];
 
 /// `name` by either of its names.
@@ -159,10 +168,20 @@ pub(crate) unsafe fn load(info: &AdoptInfo<'_>) -> Result<Functions, GpuError> {
     if debug_utils {
         probe(DEBUG, debug_address)?;
     }
+    let calibrated = calibration::EXTENSIONS.iter().any(|name| info.extensions.contains(name));
+    let calibrated_timestamps = match calibrated {
+        true => {
+            probe(CALIBRATED, device_address)?;
+            let address = device_address(CALIBRATED[0]);
+            // SAFETY: the address is that of the function, by one of its two names, which has this type.
+            Some(unsafe { std::mem::transmute::<Address, vk::PFN_vkGetCalibratedTimestampsKHR>(address) })
+        }
+        false => None,
+    };
     // SAFETY: as for the instance.
     let device = unsafe { ash::Device::load_with(device_address, info.device) };
     let debug = debug_utils.then(|| ash::ext::debug_utils::DeviceFn::load(debug_address));
-    Ok(Functions { instance, device, debug })
+    Ok(Functions { instance, device, debug, calibrated_timestamps })
 }
 
 fn address(function: Option<unsafe extern "system" fn()>) -> Address {
@@ -207,7 +226,7 @@ mod tests {
         let both = known(&[c"vkCmdPipelineBarrier2", c"vkCmdPipelineBarrier2KHR"]);
         assert_eq!((either(core, true, both) as usize, either(core, false, both) as usize), (1, 2));
         assert!(PROMOTED.contains(&(core, before)));
-        let called = |name| DEVICE.contains(&name) || INSTANCE.contains(&name);
+        let called = |name| [DEVICE, INSTANCE, CALIBRATED].iter().any(|names| names.contains(&name));
         assert!(PROMOTED.iter().all(|(core, _)| called(*core)));
     }
 }

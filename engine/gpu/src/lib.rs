@@ -7,8 +7,10 @@
 
 mod allocator;
 mod breadcrumbs;
+mod calibration;
 mod clock;
 mod context;
+mod counts;
 mod error;
 mod execute;
 mod feature;
@@ -35,7 +37,9 @@ mod timing;
 pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
 pub use ash;
 pub use breadcrumbs::PassReached;
+pub use calibration::Calibration;
 pub use context::{AdoptInfo, Context};
+pub use counts::Counts;
 pub use error::GpuError;
 pub use execute::{Execution, Record, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
@@ -52,4 +56,4 @@ pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
 pub use requirements::Requirements;
 pub use resources::{Imports, Resources};
-pub use timing::{FrameTimes, PassTime, Timing, TimingSummary};
+pub use timing::{FrameTimes, PassStatistics, PassTime, Timing, TimingSummary};

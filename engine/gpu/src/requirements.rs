@@ -5,6 +5,7 @@
 
 mod json;
 
+use crate::calibration;
 use crate::feature::{Feature, FeatureSet};
 use crate::offer::{Missing, Offer};
 use crate::pipeline::{BindingDesc, BindingKind};
@@ -110,6 +111,8 @@ pub struct Requirements {
     pub instance_extensions: Vec<ExtensionNeed>,
     /// Device extensions that must be enabled.
     pub extensions: Vec<&'static str>,
+    /// Device extensions that buy something where they are enabled.
+    pub optional_extensions: Vec<ExtensionNeed>,
     /// Features, required and optional.
     pub features: Vec<FeatureNeed>,
     /// Floors under limits.
@@ -133,10 +136,18 @@ impl Requirements {
                 buys: "names of objects and labels of passes in captures and messages",
             }],
             extensions: Vec::new(),
+            optional_extensions: calibration::EXTENSIONS
+                .map(|name| ExtensionNeed {
+                    name,
+                    required: false,
+                    buys: "passes on the CPU's time line in traces; either of the two serves",
+                })
+                .into(),
             features: vec![
                 required(Feature::Synchronization2, "the plan's barriers"),
                 required(Feature::DynamicRendering, "rendering into a host's images"),
                 optional(Feature::HostQueryReset, "timestamps reset outside the command buffer"),
+                optional(Feature::PipelineStatisticsQuery, "counts of each pass made by the device itself"),
                 optional(Feature::RobustBufferAccess, "defined results of out-of-range shader reads"),
             ],
             limits: vec![
@@ -166,6 +177,11 @@ impl Requirements {
         for &extension in &other.extensions {
             if !self.extensions.contains(&extension) {
                 self.extensions.push(extension);
+            }
+        }
+        for need in &other.optional_extensions {
+            if !self.optional_extensions.iter().any(|mine| mine.name == need.name) {
+                self.optional_extensions.push(need.clone());
             }
         }
         for need in &other.features {
@@ -217,6 +233,7 @@ impl Requirements {
             api_version: 0,
             instance_extensions: Vec::new(),
             extensions: Vec::new(),
+            optional_extensions: Vec::new(),
             features: Vec::new(),
             limits: Vec::new(),
             formats: Vec::new(),

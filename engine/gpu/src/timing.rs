@@ -1,10 +1,16 @@
-//! Device time of every pass, from timestamps in a ring that never stalls.
+//! Device time of every pass, and on request what the device counted of it, from queries in a ring that never stalls.
 //!
-//! A frame's timestamps are read once the host has begun the frame that makes it known to be done; nothing waits. A
+//! A frame's queries are read once the host has begun the frame that makes it known to be done; nothing waits. A
 //! pass is timed from when all that was recorded before it is done to when its own work is done, its barriers
 //! included.
 
-use crate::clock::{Clock, mask, median, quantile};
+mod frame;
+mod statistics;
+
+pub use frame::{FrameTimes, PassTime, TimingSummary};
+pub use statistics::PassStatistics;
+
+use crate::clock::{Clock, mask};
 use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
@@ -12,47 +18,9 @@ use crate::shared::Shared;
 use ash::vk;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use std::time::Instant;
 
-/// Device times of one frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameTimes {
-    /// The context's frame they belong to.
-    pub frame: u64,
-    /// Seconds of each pass, in the plan's order.
-    pub passes: Vec<f64>,
-    /// Seconds from the start of the first pass to the end of the last to finish.
-    pub span: f64,
-    /// Seconds of all passes added up.
-    pub sum: f64,
-}
-
-/// Median device time of a pass.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PassTime {
-    /// The pass's name.
-    pub name: String,
-    /// Median over the frames kept, in seconds.
-    pub median: f64,
-    /// 5th percentile, in seconds.
-    pub p5: f64,
-    /// 95th percentile, in seconds.
-    pub p95: f64,
-}
-
-/// Medians over the frames kept, in seconds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TimingSummary {
-    /// How many frames were kept; warm-up is not among them.
-    pub frames: usize,
-    /// Each pass, in the plan's order.
-    pub passes: Vec<PassTime>,
-    /// Median span.
-    pub span: f64,
-    /// Median sum.
-    pub sum: f64,
-}
-
-/// The ring of timestamps.
+/// The ring of queries.
 pub struct Timing {
     shared: Arc<Shared>,
     slots: Vec<Slot>,
@@ -63,14 +31,20 @@ pub struct Timing {
     warm_up: usize,
     keep: usize,
     history: VecDeque<FrameTimes>,
-    /// Scratch: value and availability of each query.
+    /// Scratch: value and availability of each timestamp.
     results: Vec<[u64; 2]>,
+    /// Scratch: the statistics of each pass, where asked for.
+    counted: Vec<statistics::Raw>,
 }
 
 struct Slot {
     pool: vk::QueryPool,
-    /// The frame whose timestamps are pending, and its number of passes.
+    /// Pipeline statistics, where asked for.
+    statistics: Option<vk::QueryPool>,
+    /// The frame whose queries are pending, and its number of passes.
     pending: Option<(u64, usize)>,
+    /// When the CPU began and ended to record each pass.
+    recorded: Vec<[Instant; 2]>,
 }
 
 impl Timing {
@@ -97,6 +71,7 @@ impl Timing {
             keep: keep.max(1),
             history: VecDeque::new(),
             results: vec![[0; 2]; 2 * most_passes as usize],
+            counted: Vec::new(),
         };
         let info = vk::QueryPoolCreateInfo::default()
             .query_type(vk::QueryType::TIMESTAMP)
@@ -106,9 +81,23 @@ impl Timing {
             // SAFETY: a live device and a complete description.
             let pool = unsafe { shared.device().create_query_pool(&info, None) }
                 .map_err(GpuError::vulkan("vkCreateQueryPool"))?;
-            timing.slots.push(Slot { pool, pending: None });
+            let recorded = Vec::with_capacity(most_passes as usize);
+            timing.slots.push(Slot { pool, statistics: None, pending: None, recorded });
         }
         Ok(timing)
+    }
+
+    /// Has the device count what each pass makes it do, too. Its work may take longer for it.
+    ///
+    /// # Errors
+    /// [`GpuError::Missing`] where the host did not enable `pipelineStatisticsQuery`, [`GpuError::Vulkan`] if the device
+    /// refuses.
+    pub fn with_pipeline_statistics(mut self) -> Result<Self, GpuError> {
+        for slot in self.slots.iter_mut().filter(|slot| slot.statistics.is_none()) {
+            slot.statistics = Some(statistics::pool(&self.shared, self.most_passes as u32)?);
+        }
+        self.counted = vec![Default::default(); self.most_passes];
+        Ok(self)
     }
 
     /// Takes the next slot, reading what it holds first. `names` are the passes; other names than before start over.
@@ -142,27 +131,48 @@ impl Timing {
         self.current = (self.current + 1) % self.slots.len();
         let slot = &mut self.slots[self.current];
         slot.pending = Some((frame, passes));
+        slot.recorded.clear();
         if passes > 0 {
+            let device = self.shared.device();
             // SAFETY: a recording command buffer outside rendering; the slot's last frame is done (see `new`).
             unsafe {
-                self.shared.device().cmd_reset_query_pool(command_buffer, slot.pool, 0, 2 * passes as u32)
-            };
+                device.cmd_reset_query_pool(command_buffer, slot.pool, 0, 2 * passes as u32);
+                if let Some(pool) = slot.statistics {
+                    device.cmd_reset_query_pool(command_buffer, pool, 0, passes as u32);
+                }
+            }
         }
         Ok(())
     }
 
     /// Before the pass's barriers: what was recorded earlier is done when the device writes it.
-    pub(crate) fn begin_pass(&self, command_buffer: vk::CommandBuffer, pass: usize) {
+    pub(crate) fn begin_pass(&mut self, command_buffer: vk::CommandBuffer, pass: usize) {
+        let now = Instant::now();
+        self.slots[self.current].recorded.push([now, now]);
         self.write(command_buffer, vk::PipelineStageFlags2::ALL_COMMANDS, 2 * pass);
+        let device = self.shared.device();
         // Depends on nothing, so a GPU does nothing. lavapipe keeps timestamps with its draws and runs dispatches at
         // once: without this it would write the begin of a dispatch after its end.
         let nothing = vk::DependencyInfo::default();
         // SAFETY: a recording command buffer outside rendering.
-        unsafe { self.shared.device().cmd_pipeline_barrier2(command_buffer, &nothing) };
+        unsafe { device.cmd_pipeline_barrier2(command_buffer, &nothing) };
+        if let Some(pool) = self.slots[self.current].statistics {
+            let flags = vk::QueryControlFlags::empty();
+            // SAFETY: as above; the query was reset in the same command buffer, and `end_pass` ends it outside rendering.
+            unsafe { device.cmd_begin_query(command_buffer, pool, pass as u32, flags) };
+        }
     }
 
-    pub(crate) fn end_pass(&self, command_buffer: vk::CommandBuffer, pass: usize) {
+    /// After the pass, outside rendering.
+    pub(crate) fn end_pass(&mut self, command_buffer: vk::CommandBuffer, pass: usize) {
+        if let Some(pool) = self.slots[self.current].statistics {
+            // SAFETY: `begin_pass` began it, outside rendering too.
+            unsafe { self.shared.device().cmd_end_query(command_buffer, pool, pass as u32) };
+        }
         self.write(command_buffer, vk::PipelineStageFlags2::ALL_COMMANDS, 2 * pass + 1);
+        if let Some([_, end]) = self.slots[self.current].recorded.last_mut() {
+            *end = Instant::now();
+        }
     }
 
     fn write(&self, command_buffer: vk::CommandBuffer, stage: vk::PipelineStageFlags2, query: usize) {
@@ -188,41 +198,42 @@ impl Timing {
             }
             if self.read(index, passes)? {
                 self.slots[index].pending = None;
-                self.keep_frame(frame, passes);
+                self.keep_frame(index, frame, passes);
             }
         }
         Ok(self.history.back())
     }
 
-    /// Reads a slot into `results`; false if some of it is not there yet.
+    /// Reads a slot into `results` and `counted`; false if some of it is not there yet.
     fn read(&mut self, slot: usize, passes: usize) -> Result<bool, GpuError> {
-        let results = &mut self.results[..2 * passes];
-        if results.is_empty() {
-            return Ok(true);
+        let slot = &self.slots[slot];
+        let times = &mut self.results[..2 * passes];
+        if !read(&self.shared, slot.pool, times)? || times.iter().any(|[_, available]| *available == 0) {
+            return Ok(false);
         }
-        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: the pool has that many queries, each result is two 64-bit words.
-        match unsafe { self.shared.device().get_query_pool_results(self.slots[slot].pool, 0, results, flags) }
-        {
-            Ok(()) => Ok(results.iter().all(|[_, available]| *available != 0)),
-            Err(vk::Result::NOT_READY) => Ok(false),
-            Err(result) => Err(GpuError::Vulkan { call: "vkGetQueryPoolResults", result }),
-        }
+        let Some(pool) = slot.statistics else { return Ok(true) };
+        let counted = &mut self.counted[..passes];
+        Ok(read(&self.shared, pool, counted)? && counted.iter().all(|[.., available]| *available != 0))
     }
 
-    fn keep_frame(&mut self, frame: u64, passes: usize) {
+    fn keep_frame(&mut self, slot: usize, frame: u64, passes: usize) {
         if self.warm_up > 0 {
             self.warm_up -= 1;
             return;
         }
         let reused = if self.history.len() == self.keep { self.history.pop_front() } else { None };
-        let mut times = reused.unwrap_or(FrameTimes { frame, passes: Vec::new(), span: 0.0, sum: 0.0 });
+        let mut times = reused.unwrap_or_default();
         times.frame = frame;
         let clock = Clock {
             mask: mask(self.shared.facts.timestamp_valid_bits),
             period: f64::from(self.shared.facts.limits.timestamp_period) * 1e-9,
         };
         clock.fill(&self.results[..2 * passes], &mut times);
+        times.recorded.clear();
+        times.recorded.extend_from_slice(&self.slots[slot].recorded);
+        times.statistics.clear();
+        let counted = self.counted.iter().take(passes);
+        times.statistics.extend(counted.map(|raw| PassStatistics::of(*raw)));
         self.history.push_back(times);
     }
 
@@ -238,21 +249,27 @@ impl Timing {
 
     /// Medians over the frames kept, or `None` when there are none yet.
     pub fn summary(&self) -> Option<TimingSummary> {
-        let pass = |(i, name): (usize, &String)| {
-            let at = |share| quantile(self.history.iter().map(|frame| frame.passes[i]), share);
-            Some(PassTime { name: name.clone(), median: at(0.5)?, p5: at(0.05)?, p95: at(0.95)? })
-        };
-        Some(TimingSummary {
-            frames: self.history.len(),
-            span: median(self.history.iter().map(|frame| frame.span))?,
-            sum: median(self.history.iter().map(|frame| frame.sum))?,
-            passes: self.names.iter().enumerate().map(pass).collect::<Option<_>>()?,
-        })
+        TimingSummary::of(&self.names, &self.history)
+    }
+}
+
+/// Reads queries from the first on, without waiting; false if none is there yet.
+fn read<T>(shared: &Shared, pool: vk::QueryPool, results: &mut [T]) -> Result<bool, GpuError> {
+    if results.is_empty() {
+        return Ok(true);
+    }
+    let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
+    // SAFETY: the pool has that many queries, and each result is as many 64-bit words as its kind of query returns.
+    match unsafe { shared.device().get_query_pool_results(pool, 0, results, flags) } {
+        Ok(()) => Ok(true),
+        Err(vk::Result::NOT_READY) => Ok(false),
+        Err(result) => Err(GpuError::Vulkan { call: "vkGetQueryPoolResults", result }),
     }
 }
 
 impl Drop for Timing {
     fn drop(&mut self) {
-        self.slots.iter().for_each(|slot| self.shared.retire(Retired::QueryPool(slot.pool)));
+        let pools = self.slots.iter().flat_map(|slot| slot.statistics.into_iter().chain([slot.pool]));
+        pools.for_each(|pool| self.shared.retire(Retired::QueryPool(pool)));
     }
 }

@@ -76,6 +76,7 @@ const fn c_name(text: &str) -> &CStr {
 }
 
 watched! {
+    command vkCmdBeginQuery(c: vk::CommandBuffer, pool: vk::QueryPool, query: u32, flags: vk::QueryControlFlags);
     command vkCmdBeginRendering(c: vk::CommandBuffer, info: *const vk::RenderingInfo<'static>);
     command vkCmdBindDescriptorSets(c: vk::CommandBuffer, point: vk::PipelineBindPoint, layout: vk::PipelineLayout, first: u32, sets: u32, p: *const vk::DescriptorSet, offsets: u32, q: *const u32) [point.as_raw(), first, sets];
     command vkCmdBindIndexBuffer(c: vk::CommandBuffer, buffer: vk::Buffer, offset: u64, ty: vk::IndexType);
@@ -90,6 +91,7 @@ watched! {
     command vkCmdDrawIndexed(c: vk::CommandBuffer, n: u32, i: u32, f: u32, o: i32, fi: u32);
     command vkCmdDrawIndexedIndirect(c: vk::CommandBuffer, buffer: vk::Buffer, offset: u64, n: u32, stride: u32);
     command vkCmdDrawIndirect(c: vk::CommandBuffer, buffer: vk::Buffer, offset: u64, n: u32, stride: u32);
+    command vkCmdEndQuery(c: vk::CommandBuffer, pool: vk::QueryPool, query: u32);
     command vkCmdEndRendering(c: vk::CommandBuffer);
     command vkCmdFillBuffer(c: vk::CommandBuffer, buffer: vk::Buffer, offset: u64, size: u64, data: u32);
     command vkCmdPushConstants(c: vk::CommandBuffer, layout: vk::PipelineLayout, stages: vk::ShaderStageFlags, offset: u32, size: u32, p: *const c_void) [stages.as_raw(), offset, size];
@@ -105,6 +107,7 @@ watched! {
     fallible vkBindImageMemory(d: vk::Device, image: vk::Image, memory: vk::DeviceMemory, offset: u64) -> vk::Result;
     fallible vkGetQueryPoolResults(d: vk::Device, pool: vk::QueryPool, first: u32, n: u32, size: usize, p: *mut c_void, stride: u64, flags: vk::QueryResultFlags) -> vk::Result;
     fallible vkMapMemory(d: vk::Device, memory: vk::DeviceMemory, offset: u64, size: u64, flags: vk::MemoryMapFlags, p: *mut *mut c_void) -> vk::Result;
+    plain vkGetCalibratedTimestampsEXT(d: vk::Device, n: u32, p: *const vk::CalibratedTimestampInfoKHR<'static>, q: *mut u64, r: *mut u64) -> vk::Result;
     plain vkGetBufferMemoryRequirements(d: vk::Device, buffer: vk::Buffer, p: *mut vk::MemoryRequirements);
     plain vkGetImageMemoryRequirements(d: vk::Device, image: vk::Image, p: *mut vk::MemoryRequirements);
     plain vkResetDescriptorPool(d: vk::Device, pool: vk::DescriptorPool, flags: vk::DescriptorPoolResetFlags) -> vk::Result;

@@ -143,6 +143,14 @@ impl ImageView {
         seen_aspect(self.image.desc())
     }
 
+    /// Bytes of the texels seen; 0 for a format whose size is not known.
+    pub(crate) fn bytes(&self) -> u64 {
+        let (image, desc) = (self.image.desc(), self.desc);
+        let extent = self.image.extent(desc.base_mip);
+        let seen = ImageDesc { extent, mips: desc.mips, layers: desc.layers, ..*image };
+        seen.bytes().unwrap_or(0)
+    }
+
     /// Width and height in texels of the view's first mip.
     pub fn extent(&self) -> [u32; 2] {
         let [width, height, _] = self.image.extent(self.desc.base_mip);

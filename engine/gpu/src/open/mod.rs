@@ -28,7 +28,8 @@ pub struct OpenOptions<'a> {
     pub selector: Selector,
     /// Core and synchronisation validation, with every message from warnings up collected. Fails without the layer.
     pub validation: bool,
-    /// What will run on it; [`Requirements::engine`] is added. Optional features are enabled where supported.
+    /// What will run on it; [`Requirements::engine`] is added. Optional features and extensions are enabled where
+    /// supported.
     pub requirements: &'a Requirements,
     /// Instance extensions beside VK_EXT_debug_utils, such as those a window needs.
     pub instance_extensions: &'a [&'a CStr],
@@ -88,7 +89,8 @@ impl OpenDevice {
         let queue_family = select::queue_family(&instance.raw, physical_device, requirements.queue)?;
         let supported = select::supported(&instance.raw, physical_device, &line)?;
         let features = requirements.features_to_enable(supported).intersection(supported);
-        let extensions = [options.device_extensions, &required(&requirements)?].concat();
+        let optional = select::optional_extensions(&instance.raw, physical_device, &requirements)?;
+        let extensions = [options.device_extensions, &required(&requirements)?, &optional].concat();
         let device = make_device(&instance.raw, physical_device, queue_family, features, &extensions)?;
         let info = vk::CommandPoolCreateInfo::default()
             .queue_family_index(queue_family)
@@ -206,10 +208,17 @@ impl Drop for OpenDevice {
     }
 }
 
+/// Extensions that this opener can enable: those that need no structure of their own.
+const KNOWN: [&CStr; 4] = [
+    ash::khr::swapchain::NAME,
+    ash::khr::push_descriptor::NAME,
+    ash::khr::calibrated_timestamps::NAME,
+    ash::ext::calibrated_timestamps::NAME,
+];
+
 /// Names of the extensions required, ready for Vulkan.
 fn required(requirements: &Requirements) -> Result<Vec<&'static CStr>, GpuError> {
-    let known = [ash::khr::swapchain::NAME, ash::khr::push_descriptor::NAME];
-    let find = |name: &&str| known.into_iter().find(|known| known.to_bytes() == name.as_bytes());
+    let find = |name: &&str| KNOWN.into_iter().find(|known| known.to_bytes() == name.as_bytes());
     let unknown = |name: &str| GpuError::misuse(name, "an extension that this opener does not know");
     requirements.extensions.iter().map(|name| find(name).ok_or_else(|| unknown(name))).collect()
 }

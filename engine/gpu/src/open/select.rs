@@ -3,6 +3,7 @@
 use crate::error::GpuError;
 use crate::feature::FeatureSet;
 use crate::offer::Missing;
+use crate::requirements::Requirements;
 use ash::vk;
 use std::convert::Infallible;
 use std::ffi::CStr;
@@ -197,6 +198,25 @@ pub(super) fn supported(
     }
     // SAFETY: a device of this instance, of version 1.3.
     Ok(unsafe { FeatureSet::supported(instance, physical_device) })
+}
+
+/// The optional extensions that the device has; of two that buy the same, the first.
+pub(super) fn optional_extensions(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    requirements: &Requirements,
+) -> Result<Vec<&'static CStr>, GpuError> {
+    // SAFETY: a device of this instance.
+    let have = unsafe { instance.enumerate_device_extension_properties(physical_device) }
+        .map_err(GpuError::vulkan("vkEnumerateDeviceExtensionProperties"))?;
+    let has = |name: &CStr| have.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name));
+    let mut enabled: Vec<(&str, &CStr)> = Vec::new();
+    for need in &requirements.optional_extensions {
+        let known = super::KNOWN.into_iter().find(|known| known.to_bytes() == need.name.as_bytes());
+        let known = known.filter(|name| has(name) && !enabled.iter().any(|(buys, _)| *buys == need.buys));
+        enabled.extend(known.map(|name| (need.buys, name)));
+    }
+    Ok(enabled.into_iter().map(|(_, name)| name).collect())
 }
 
 #[cfg(test)]

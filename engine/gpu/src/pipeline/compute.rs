@@ -1,7 +1,7 @@
 //! Compute pipelines.
 
 use super::layout::{BindingDesc, Interface, PipelineCore};
-use super::spirv::Module;
+use super::spirv::{Module, workgroup_invocations};
 use crate::context::Context;
 use crate::error::GpuError;
 use ash::vk;
@@ -22,12 +22,20 @@ pub struct ComputePipelineDesc<'a> {
 
 /// A compute pipeline. Clones refer to the same one; the last one dropped retires it.
 #[derive(Clone)]
-pub struct ComputePipeline(pub(crate) Arc<PipelineCore>);
+pub struct ComputePipeline {
+    pub(crate) core: Arc<PipelineCore>,
+    workgroup: u64,
+}
 
 impl ComputePipeline {
     /// The name it was made with.
     pub fn name(&self) -> &str {
-        &self.0.name
+        &self.core.name
+    }
+
+    /// Invocations of a workgroup, as the module states them.
+    pub fn workgroup_invocations(&self) -> u64 {
+        self.workgroup
     }
 }
 
@@ -58,6 +66,6 @@ impl Context {
             Err((_, result)) => return Err(GpuError::Vulkan { call: "vkCreateComputePipelines", result }),
         };
         self.shared.name(core.pipeline, vk::ObjectType::PIPELINE, desc.name);
-        Ok(ComputePipeline(Arc::new(core)))
+        Ok(ComputePipeline { core: Arc::new(core), workgroup: workgroup_invocations(desc.spirv) })
     }
 }

@@ -7,6 +7,9 @@ use ash::vk;
 const MAGIC: u32 = 0x0723_0203;
 const HEADER_WORDS: usize = 5;
 const OP_ENTRY_POINT: u32 = 15;
+const OP_EXECUTION_MODE: u32 = 16;
+/// The execution mode that states the size of a workgroup.
+const LOCAL_SIZE: u32 = 17;
 /// SPIR-V 1.6, the newest that Vulkan 1.3 takes.
 const NEWEST: u32 = 0x0001_0600;
 /// The entry point's name, as glslang writes it and as literal words: "main" and a terminating zero.
@@ -42,6 +45,22 @@ pub(crate) fn check(name: &str, words: &[u32], stage: vk::ShaderStageFlags) -> R
         rest = &rest[length..];
     }
     if found { Ok(()) } else { broken(&format!("the SPIR-V has no entry point `main` for {stage:?}")) }
+}
+
+/// Invocations of a workgroup, as `local_size` states it; 0 where the module states none in plain numbers.
+pub(crate) fn workgroup_invocations(words: &[u32]) -> u64 {
+    let mut rest = words.get(HEADER_WORDS..).unwrap_or(&[]);
+    while let Some(&first) = rest.first() {
+        let (length, opcode) = ((first >> 16) as usize, first & 0xffff);
+        match rest.get(..length) {
+            Some([_, _, LOCAL_SIZE, x, y, z]) if opcode == OP_EXECUTION_MODE => {
+                return u64::from(*x) * u64::from(*y) * u64::from(*z);
+            }
+            Some(instruction) if !instruction.is_empty() => rest = &rest[length..],
+            _ => break,
+        }
+    }
+    0
 }
 
 /// A shader module that lives for the making of one pipeline.
@@ -86,6 +105,16 @@ mod tests {
     /// A header and one `OpEntryPoint GLCompute %1 "main"`.
     fn module() -> Vec<u32> {
         vec![MAGIC, 0x0001_0300, 0, 2, 0, 5 << 16 | OP_ENTRY_POINT, 5, 1, MAIN[0], 0]
+    }
+
+    #[test]
+    fn the_size_of_a_workgroup_is_read() {
+        let mut words = module();
+        assert_eq!(workgroup_invocations(&words), 0);
+        words.extend([6 << 16 | OP_EXECUTION_MODE, 1, LOCAL_SIZE, 8, 4, 2]);
+        assert_eq!(workgroup_invocations(&words), 64);
+        words.pop();
+        assert_eq!(workgroup_invocations(&words), 0, "a module that is cut short is not read past its end");
     }
 
     #[test]

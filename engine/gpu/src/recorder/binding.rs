@@ -49,6 +49,15 @@ impl Binding {
         Self { binding, resource: Bindable::Sampler(sampler.clone()) }
     }
 
+    /// Bytes of the range bound.
+    pub(super) fn bytes(&self) -> u64 {
+        match &self.resource {
+            Bindable::Storage(slice) | Bindable::Uniform(slice) => slice.size,
+            Bindable::Sampled(view) | Bindable::StorageImage(view) => view.bytes(),
+            Bindable::Sampler(_) => 0,
+        }
+    }
+
     fn kind(&self) -> BindingKind {
         match self.resource {
             Bindable::Storage(_) => BindingKind::StorageBuffer,

@@ -17,7 +17,7 @@ impl Recorder<'_> {
     /// [`GpuError::Misuse`] if no compute pipeline is bound and complete, within rendering, or over
     /// `maxComputeWorkGroupCount`.
     pub fn dispatch(&mut self, groups: [u32; 3]) -> Result<(), GpuError> {
-        self.ready_to_dispatch("dispatch")?;
+        let size = self.ready_to_dispatch("dispatch")?;
         let most = self.context.limits().max_compute_work_group_count;
         if groups.iter().zip(most).any(|(&groups, most)| groups > most) {
             let problem = format!("{groups:?} workgroups; maxComputeWorkGroupCount is {most:?}");
@@ -25,6 +25,8 @@ impl Recorder<'_> {
         }
         // SAFETY: a compute pipeline with its sets and constants is bound; the counts are within the limits.
         unsafe { self.device().cmd_dispatch(self.command_buffer, groups[0], groups[1], groups[2]) };
+        self.counts.dispatches += 1;
+        self.counts.invocations += groups.iter().fold(size, |all, &side| all * u64::from(side));
         Ok(())
     }
 
@@ -46,13 +48,15 @@ impl Recorder<'_> {
                 arguments.offset,
             );
         }
+        self.counts.dispatches += 1;
         Ok(())
     }
 
-    fn ready_to_dispatch(&self, call: &'static str) -> Result<(), GpuError> {
+    /// Invocations of a workgroup of the pipeline bound.
+    fn ready_to_dispatch(&self, call: &'static str) -> Result<u64, GpuError> {
         self.outside_rendering(call)?;
         match self.ready(call)? {
-            Bound::Compute(_) => Ok(()),
+            Bound::Compute(pipeline) => Ok(pipeline.workgroup_invocations()),
             Bound::Graphics(_) => {
                 Err(GpuError::misuse(call, "bind a compute pipeline, not a graphics pipeline"))
             }
@@ -101,6 +105,7 @@ impl Recorder<'_> {
         let info = vk::DependencyInfo::default().memory_barriers(&barriers);
         // SAFETY: a recording command buffer outside rendering.
         unsafe { self.device().cmd_pipeline_barrier2(self.command_buffer, &info) };
+        self.counts.barriers += 1;
         Ok(())
     }
 
@@ -141,6 +146,7 @@ impl Recorder<'_> {
         let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
         // SAFETY: a recording command buffer outside rendering and a live image of this device.
         unsafe { self.device().cmd_pipeline_barrier2(self.command_buffer, &info) };
+        self.counts.barriers += 1;
         Ok(())
     }
 

@@ -34,6 +34,7 @@ impl Recorder<'_> {
         unsafe {
             self.device().cmd_copy_buffer(self.command_buffer, from.buffer.raw(), to.buffer.raw(), &[region]);
         }
+        self.counts.copied(to.size);
         Ok(())
     }
 
@@ -52,6 +53,7 @@ impl Recorder<'_> {
         unsafe {
             self.device().cmd_fill_buffer(self.command_buffer, to.buffer.raw(), to.offset, to.size, value);
         }
+        self.counts.copied(to.size);
         Ok(())
     }
 
@@ -84,6 +86,7 @@ impl Recorder<'_> {
             let problem = format!("{} bytes do not hold a copy of {all} texels of {texel} bytes", to.size);
             return Err(GpuError::misuse(to.buffer.name(), problem));
         }
+        self.counts.copied(to.size);
         let whole = region(from, to.offset);
         if texels == all {
             self.copy_regions(from, &to.buffer, &[whole]);
@@ -154,6 +157,7 @@ impl Recorder<'_> {
                 &[region(to, from.offset)],
             );
         }
+        self.counts.copied(size);
         Ok(())
     }
 

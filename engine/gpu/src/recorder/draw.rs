@@ -52,6 +52,7 @@ impl Recorder<'_> {
             let (buffers, offsets) = ([slice.buffer.raw()], [slice.offset]);
             self.device().cmd_bind_vertex_buffers(self.command_buffer, slot, &buffers, &offsets);
         }
+        self.counts.bound_bytes += slice.size;
         Ok(())
     }
 
@@ -71,6 +72,7 @@ impl Recorder<'_> {
         unsafe {
             self.device().cmd_bind_index_buffer(self.command_buffer, slice.buffer.raw(), slice.offset, kind);
         }
+        self.counts.bound_bytes += slice.size;
         Ok(())
     }
 
@@ -92,6 +94,7 @@ impl Recorder<'_> {
                 instances.start,
             );
         }
+        self.count_draw(count, instance_count);
         Ok(())
     }
 
@@ -120,6 +123,7 @@ impl Recorder<'_> {
                 instance,
             );
         }
+        self.count_draw(count, instance_count);
         Ok(())
     }
 
@@ -135,6 +139,7 @@ impl Recorder<'_> {
         let (buffer, offset) = (slice.buffer.raw(), slice.offset);
         // SAFETY: the arguments lie in a live buffer; what they say is the caller's, as the module says.
         unsafe { self.device().cmd_draw_indirect(self.command_buffer, buffer, offset, count, STRIDE) };
+        self.counts.draws += u64::from(count);
         Ok(())
     }
 
@@ -157,7 +162,13 @@ impl Recorder<'_> {
         unsafe {
             self.device().cmd_draw_indexed_indirect(self.command_buffer, buffer, offset, count, STRIDE)
         };
+        self.counts.draws += u64::from(count);
         Ok(())
+    }
+
+    fn count_draw(&mut self, vertices: u32, instances: u32) {
+        self.counts.draws += 1;
+        self.counts.vertices += u64::from(vertices) * u64::from(instances);
     }
 
     fn check_indices(&self, end: u64) -> Result<(), GpuError> {

@@ -21,6 +21,7 @@ pub use binding::Binding;
 pub use rendering::{ColorAttachment, DepthAttachment, Load, Rendering};
 
 use crate::context::Context;
+use crate::counts::Counts;
 use crate::error::GpuError;
 use crate::memory::BufferSlice;
 use crate::pipeline::{ComputePipeline, GraphicsPipeline, PipelineCore};
@@ -36,7 +37,7 @@ enum Bound {
 impl Bound {
     fn core(&self) -> &PipelineCore {
         match self {
-            Self::Compute(pipeline) => &pipeline.0,
+            Self::Compute(pipeline) => &pipeline.core,
             Self::Graphics(pipeline) => &pipeline.0.core,
         }
     }
@@ -50,6 +51,7 @@ pub struct Recorder<'a> {
     /// Whether the push constants of the pipeline bound last were given.
     pushed: bool,
     draw: draw::DrawState,
+    pub(crate) counts: Counts,
 }
 
 impl<'a> Recorder<'a> {
@@ -60,7 +62,14 @@ impl<'a> Recorder<'a> {
     /// family, and used by no one else while the recorder lives. It is submitted at most once, in this frame, and its
     /// work is done before frame + `frames_in_flight` begins.
     pub unsafe fn new(context: &'a Context, command_buffer: vk::CommandBuffer) -> Self {
-        Self { context, command_buffer, bound: None, pushed: false, draw: Default::default() }
+        Self {
+            context,
+            command_buffer,
+            bound: None,
+            pushed: false,
+            draw: Default::default(),
+            counts: Counts::default(),
+        }
     }
 
     /// The context recorded for.
@@ -71,6 +80,11 @@ impl<'a> Recorder<'a> {
     /// The host's command buffer, for commands of its own.
     pub fn command_buffer(&self) -> vk::CommandBuffer {
         self.command_buffer
+    }
+
+    /// What was recorded so far; within a plan, since the pass began.
+    pub fn counts(&self) -> Counts {
+        self.counts
     }
 
     fn device(&self) -> &'a ash::Device {
@@ -133,6 +147,7 @@ impl<'a> Recorder<'a> {
                 );
             }
         }
+        self.counts.bound_bytes += bindings.iter().map(Binding::bytes).sum::<u64>();
         self.pushed = core.interface.push_constant_size == 0;
         self.bound = Some(bound);
         Ok(())

@@ -82,6 +82,9 @@ impl Recorder<'_> {
         }
         // SAFETY: outside rendering, with live views of this device that were checked to fit.
         unsafe { self.device().cmd_begin_rendering(self.command_buffer, &info) };
+        let views =
+            rendering.colors.iter().map(|color| color.view).chain(rendering.depth.map(|depth| depth.view));
+        self.counts.bound_bytes += views.map(ImageView::bytes).sum::<u64>();
         let depth = rendering.depth.map(|depth| (depth.view.image().desc().format, depth.write));
         self.draw.rendering = Some(Attachments { colors: formats, count, depth });
         self.set_viewport([0.0, 0.0, extent[0] as f32, extent[1] as f32], [0.0, 1.0])?;

@@ -30,6 +30,7 @@ impl Requirements {
             "before_1_3": before,
             "instance_extensions": self.instance_extensions.iter().map(extension).collect::<Vec<_>>(),
             "device_extensions": self.extensions,
+            "optional_device_extensions": self.optional_extensions.iter().map(extension).collect::<Vec<_>>(),
             "features": self.features.iter().map(feature).collect::<Vec<_>>(),
             "limits": self.limits.iter().map(limit).collect::<Vec<_>>(),
             "formats": self.formats.iter().map(format).collect::<Vec<_>>(),
@@ -67,6 +68,7 @@ mod tests {
         assert_eq!(parsed["before_1_3"]["dynamicRendering"], "VK_KHR_dynamic_rendering");
         assert_eq!(parsed["instance_extensions"][0]["name"], "VK_EXT_debug_utils");
         assert_eq!(parsed["device_extensions"], json!(["VK_KHR_x"]));
+        assert_eq!(parsed["optional_device_extensions"][0]["required"], false);
         assert_eq!(parsed["formats"][0]["format"], "R32G32B32A32_SFLOAT");
         let mut features = parsed["formats"][0]["features"].as_array().unwrap().clone();
         features.sort_by_key(Value::to_string);

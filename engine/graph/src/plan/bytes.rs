@@ -1,6 +1,6 @@
 //! Bytes of a plan, known before anything is allocated.
 
-use super::{Plan, PlanResource};
+use super::{Plan, PlanAccess, PlanResource};
 use crate::resource::Origin;
 
 /// Bytes of the resources that steps use. Image bytes are of texels; a device may need more.
@@ -38,9 +38,42 @@ impl<R> Plan<R> {
             unknown: used().filter(|r| r.bytes.is_none()).count(),
         }
     }
+
+    /// Bytes of the resources that step `index` uses, each once and whole; 0 for a step that is not there. Resources
+    /// whose size is not known before allocation are not counted.
+    pub fn step_bytes(&self, index: usize) -> u64 {
+        let accesses = self.steps.get(index).map_or(&[][..], |step| &step.accesses);
+        let first = |(place, access): &(usize, &PlanAccess)| {
+            accesses[..*place].iter().all(|before| before.resource != access.resource)
+        };
+        let once = accesses.iter().enumerate().filter(first);
+        let bytes = once.filter_map(|(_, access)| self.resources[access.resource.index()].bytes);
+        bytes.fold(0, u64::saturating_add)
+    }
 }
 
 fn alive_at(resource: &PlanResource, step: usize) -> bool {
     let end = |last| if !resource.exports.is_empty() { usize::MAX } else { last };
     resource.lifetime.is_some_and(|l| (l.first..=end(l.last)).contains(&step))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Access, BufferDesc, Graph, Limits, PassKind};
+
+    #[test]
+    fn a_step_counts_each_of_its_resources_once() {
+        let mut graph = Graph::new();
+        let mut make = graph.pass("make", PassKind::Compute);
+        let numbers = make.create_buffer("numbers", BufferDesc::new(64), Access::ComputeStorageWrite);
+        let sums = make.create_buffer("sums", BufferDesc::new(16), Access::ComputeStorageWrite);
+        make.record(());
+        let mut add = graph.pass("add", PassKind::Compute);
+        add.read(&numbers, Access::ComputeStorageRead).read(&numbers, Access::ComputeUniform);
+        let sums = add.update(sums, Access::ComputeStorageReadWrite);
+        add.record(());
+        graph.export(sums, Access::VertexBuffer);
+        let plan = graph.compile(&Limits::default()).unwrap();
+        assert_eq!([0, 1, 2].map(|step| plan.step_bytes(step)), [80, 80, 0]);
+    }
 }
