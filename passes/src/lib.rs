@@ -5,6 +5,8 @@
 #![forbid(unsafe_code)]
 
 pub use airglow_bake as bake;
+#[cfg(feature = "fog")]
+pub use airglow_fog as fog;
 pub use airglow_gpu as gpu;
 pub use airglow_graph as graph;
 pub use airglow_math as math;

@@ -1,0 +1,152 @@
+//! The pass: its pipeline, kept from frame to frame.
+
+use airglow_gpu::Binding;
+use airglow_gpu::ash::vk;
+use airglow_gpu::requirements::FormatNeed;
+use airglow_gpu::{
+    Blend, ColorAttachment, Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, ImageView, Load,
+    Recorder, Rendering, Requirements,
+};
+use airglow_graph::{Access, LeftOut};
+
+use crate::FogError;
+use crate::control::Control;
+use crate::frame::{Counts, Frame};
+use crate::kernels;
+use crate::settings::Settings;
+
+/// What the pass does with the images of a frame, in the order of [`Bindings`]: for a host with a frame graph of its own.
+pub const ACCESSES: [(&str, Access); 3] = [
+    ("surface", Access::FragmentSampled),
+    ("depth", Access::FragmentSampledDepth),
+    ("target", Access::ColorAttachmentWrite),
+];
+
+/// The images of a frame, in the order of [`ACCESSES`].
+#[derive(Clone)]
+pub struct Bindings {
+    /// Radiance of the surfaces.
+    pub surface: ImageView,
+    /// Their depth.
+    pub depth: ImageView,
+    /// The picture through the medium; all of it is written.
+    pub target: ImageView,
+}
+
+/// Single scattering from lights inside a medium. Made once for a device and [`Settings`]; holds no frame.
+#[derive(Clone)]
+pub struct Fog {
+    settings: Settings,
+    pipeline: GraphicsPipeline,
+}
+
+/// A frame as the road without a graph records it.
+#[derive(Clone)]
+pub enum Prepared {
+    /// The pass has something to do.
+    Pass(Pass),
+    /// It has not: the surface is the picture.
+    LeftOut(LeftOut),
+}
+
+/// A prepared pass.
+#[derive(Clone)]
+pub struct Pass {
+    /// Changes the view before it is recorded again.
+    pub control: Control,
+    pipeline: GraphicsPipeline,
+}
+
+impl Fog {
+    /// What a device must offer for these settings, to be joined to those of other passes before it is made.
+    #[must_use]
+    pub fn requirements(settings: &Settings) -> Requirements {
+        let mut requirements = Requirements::engine();
+        requirements.formats.push(FormatNeed {
+            format: settings.format,
+            usage: vk::FormatFeatureFlags::COLOR_ATTACHMENT,
+            why: "the picture through the medium",
+        });
+        requirements
+    }
+
+    /// Makes the kernel that `settings` need on a device.
+    ///
+    /// # Errors
+    /// [`FogError::Range`] for settings out of range, [`FogError::Gpu`] when the device refuses.
+    pub fn new(context: &Context, settings: Settings) -> Result<Self, FogError> {
+        settings.check()?;
+        let pipeline = context.create_graphics_pipeline(&GraphicsPipelineDesc {
+            name: "fog airlight",
+            vertex: &kernels::rectangle(),
+            fragment: Some(&kernels::airlight(&settings)),
+            bindings: &kernels::BINDINGS,
+            push_constant_size: 0,
+            vertex_buffers: &[],
+            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+            cull: vk::CullModeFlags::NONE,
+            front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+            depth: None,
+            colors: &[settings.format],
+            blend: Blend::None,
+        })?;
+        Ok(Self { settings, pipeline })
+    }
+
+    /// The settings it was made for.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Prepares a frame for the road without a graph: the host makes the barriers of [`ACCESSES`] around
+    /// [`Pass::record`], which has none of its own.
+    ///
+    /// # Errors
+    /// [`FogError::Range`], [`FogError::TooManyLights`], [`FogError::Kernel`].
+    pub fn prepare<I>(&self, frame: &Frame<I>) -> Result<Prepared, FogError> {
+        let control = Control::new(self.settings, frame.size, &frame.view)?;
+        if frame.view.medium.is_clear() {
+            return Ok(Prepared::LeftOut(LeftOut {
+                what: "fog".to_owned(),
+                why: "the medium has no extinction".to_owned(),
+                bytes: 0,
+                time: None,
+                would_return: "a medium with extinction".to_owned(),
+            }));
+        }
+        Ok(Prepared::Pass(Pass { control, pipeline: self.pipeline.clone() }))
+    }
+}
+
+/// The record of the lights that a frame does without; `None` without such.
+pub(crate) fn lights_left_out(counts: Counts, bound: f64) -> Option<LeftOut> {
+    let Counts { evaluated, left_out } = counts;
+    (left_out > 0).then(|| LeftOut {
+        what: format!("fog of {left_out} of {} lights", evaluated + left_out),
+        why: format!("no pixel can get {bound} W/sr/m2 of airlight from them"),
+        bytes: 0,
+        time: None,
+        would_return: "a stronger or nearer light, or a smaller Settings::bound".to_owned(),
+    })
+}
+
+impl Pass {
+    /// Records the pass without barriers. Command-buffer state changed: as [`Recorder`] says.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for views that do not fit.
+    pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        let frame = recorder.upload(&[self.control.constants()])?;
+        let colors = [ColorAttachment { view: &bindings.target, load: Load::Discard }];
+        recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
+        let bound = [
+            Binding::uniform(0, &frame),
+            Binding::sampled(1, bindings.surface.clone()),
+            Binding::sampled(2, bindings.depth.clone()),
+        ];
+        recorder.bind_graphics(&self.pipeline, &bound)?;
+        recorder.draw(0..3, 0..1)?;
+        recorder.end_rendering()
+    }
+}

@@ -1,0 +1,57 @@
+//! How far off a light's direction its airlight can be seen: a bound, not an estimate.
+
+use std::f64::consts::PI;
+
+/// How far a light reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reach {
+    /// Below the bound everywhere.
+    Nowhere,
+    /// Below the bound at larger angles, radians, from the direction to the light.
+    Within(f64),
+    /// Not bounded.
+    Everywhere,
+}
+
+/// `most` bounds scattering times phase times radiant intensity times exp(-extinction distance), W/sr/m3 m2; `distance`
+/// is that of the light, `radius` its own, in metres.
+///
+/// No path over a point of the ray is shorter than the distance of the light. So the airlight at an angle g off it is at
+/// most `most` times the integral of 1 / d^2 over the whole ray, (pi - g) / (distance sin g), and with a radius at most
+/// pi / radius; both fall with g.
+pub(crate) fn reach(most: f64, distance: f64, radius: f64, bound: f64) -> Reach {
+    // NaN, as of a distance of 0, is not below.
+    if most <= 0.0 || (radius > 0.0 && most * PI / radius < bound) {
+        return Reach::Nowhere;
+    }
+    let allowed = bound * distance / most;
+    if !(allowed > 1.0) {
+        return Reach::Everywhere;
+    }
+    let (mut inside, mut outside) = (0.0, PI);
+    for _ in 0..50 {
+        let angle: f64 = 0.5 * (inside + outside);
+        if (PI - angle) / angle.sin() > allowed { inside = angle } else { outside = angle }
+    }
+    Reach::Within(outside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bound_holds_beyond_the_reach_and_is_met_at_it() {
+        let airlight = |most: f64, distance: f64, angle: f64| most * (PI - angle) / (distance * angle.sin());
+        for (most, distance, bound) in [(1.0, 10.0, 0.2), (1e-3, 5.0, 1e-3), (50.0, 1e3, 1.0)] {
+            let Reach::Within(angle) = reach(most, distance, 0.0, bound) else { panic!("{most} {distance}") };
+            let at = airlight(most, distance, angle);
+            assert!((at / bound - 1.0).abs() < 1e-6, "{at} instead of {bound} at {angle}");
+            assert!(airlight(most, distance, angle + 0.1) < bound);
+        }
+        assert_eq!(reach(1.0, 10.0, 0.0, 0.0999), Reach::Everywhere, "1 / distance is left behind the eye");
+        assert_eq!(reach(0.0, 10.0, 0.0, 0.1), Reach::Nowhere);
+        assert_eq!(reach(1.0, 10.0, 100.0, 0.1), Reach::Nowhere);
+        assert_eq!(reach(1.0, 0.0, 0.0, 0.1), Reach::Everywhere);
+    }
+}

@@ -1,0 +1,60 @@
+//! The knobs of the pass: range, default and its reason.
+
+use airglow_gpu::ash::vk;
+
+use crate::FogError;
+use crate::error::check;
+use crate::medium::PhaseKind;
+
+/// Lights of a frame, at most.
+pub const MAX_LIGHTS: usize = 64;
+
+/// How exactly the airlight is computed: relative error against quadrature in f64 over random inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Preset {
+    /// 6 taps a light and pixel.
+    #[default]
+    Default,
+    /// 16 taps a light and pixel.
+    Reference,
+}
+
+/// What a [`Fog`](crate::Fog) is prepared for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Format of the picture that the pass writes. Default RGBA32F; RGBA16F ends at 65504 and has steps of 1/1024.
+    pub format: vk::Format,
+    /// How exactly. Default [`Preset::Default`]: its error is below half an 8-bit step.
+    pub preset: Preset,
+    /// The kind of phase function; its numbers come with the medium. Default Henyey-Greenstein, which scene files and
+    /// most hosts know, and which is isotropic at g = 0.
+    pub phase: PhaseKind,
+    /// Whether a medium may thin with height. Default no: then its arithmetic does not exist.
+    pub height: bool,
+    /// Radiance, W/sr/m2, below which the airlight of one light is left out of a pixel. 0 leaves nothing out. Default
+    /// 1e-4: half an 8-bit step of the darkest pixels at an exposure of 1.
+    pub bound: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            format: vk::Format::R32G32B32A32_SFLOAT,
+            preset: Preset::Default,
+            phase: PhaseKind::HenyeyGreenstein,
+            height: false,
+            bound: 1e-4,
+        }
+    }
+}
+
+impl Settings {
+    /// Refuses what is out of range.
+    ///
+    /// # Errors
+    /// [`FogError::Range`] with the field.
+    pub fn check(&self) -> Result<(), FogError> {
+        let bound = self.bound;
+        check(|| "bound".to_owned(), bound, bound >= 0.0 && bound.is_finite(), "a radiance from 0 on")
+    }
+}

@@ -1,0 +1,132 @@
+// Airlight: what a ray's medium scatters towards the eye, once, out of the light of one point, spot or small sphere.
+// Sun, Ramamoorthi, Narasimhan and Nayar 2005; Sun 2008, chapter 3. Functions over values, no bindings: for this
+// room's passes and for a host's own shaders.
+//
+// The includer defines one of
+//   PHASE_KIND_ISOTROPIC, PHASE_KIND_POLYNOMIAL, PHASE_KIND_HENYEY_GREENSTEIN, PHASE_KIND_DRAINE
+// and FOG_TAPS, 6 or 16,
+// and may define
+//   FOG_HEIGHT                       1: the medium thins with height
+//   FOG_VISIBILITY(light, position)  what of a light arrives at a position relative to the eye, 0 to 1: the host's
+//                                    shadow map; without it there is no such branch
+
+#include "fog/phase.glsl"
+#include "fog/path.glsl"
+#include "fog/interval.glsl"
+#include "fog/taps.glsl"
+
+// A homogeneous medium, or one that thins with height.
+struct FogMedium {
+    vec3 extinction; // 1/m; where it thins, at the height of the eye
+    vec3 scattering; // 1/m, the same
+    vec4 phase;      // polynomial: weights; Henyey-Greenstein: g; Draine: g, alpha
+    float thinning;  // 1 over the height, m, in which it thins by e, along +Y
+};
+
+// A light, relative to the eye.
+struct FogLight {
+    vec4 position_radius;  // m
+    vec4 intensity_reach;  // W/sr times the light's scatter factor; cosine at the eye from which on it is left out
+    vec4 axis_cosine;      // of a spot's cone, away from the light; cosine of its half angle, -2 for none
+    vec4 falloff_range;    // scale and offset of the cosine; range, m, 0 for none; 1 where it shines within a box
+    vec4 low;              // corners of the box
+    vec4 high;
+};
+
+float fog_phase(vec4 values, float cosine)
+{
+#if defined(PHASE_KIND_POLYNOMIAL)
+    return phase_polynomial(values, cosine);
+#elif defined(PHASE_KIND_HENYEY_GREENSTEIN)
+    return phase_henyey_greenstein(values.x, cosine);
+#elif defined(PHASE_KIND_DRAINE)
+    return phase_draine(values.x, values.y, cosine);
+#else
+    return phase_isotropic();
+#endif
+}
+
+// (exp(-x) - 1) / -x: the mean of what thins over x scale heights.
+float fog_mean_density(float x)
+{
+    return abs(x) < 0.02 ? 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0)) : (1.0 - exp(-x)) / x;
+}
+
+// How much of the surface's light is left after `distance`, which may be infinite.
+vec3 fog_transmittance(FogMedium medium, vec3 direction, float distance)
+{
+#if FOG_HEIGHT
+    return exp(-medium.extinction * distance * fog_mean_density(clamp(direction.y * distance * medium.thinning, -80.0, 1e30)));
+#else
+    return exp(-medium.extinction * distance);
+#endif
+}
+
+// The part of the ray that a light can reach, empty where x >= y.
+vec2 fog_interval(FogLight light, vec3 direction, float distance)
+{
+    vec2 interval = vec2(0.0, distance);
+    vec3 position = light.position_radius.xyz;
+    if (light.falloff_range.z > 0.0) {
+        interval = fog_in_sphere(interval, position, light.falloff_range.z, direction);
+    }
+    if (light.axis_cosine.w > -1.5) {
+        interval = fog_in_cone(interval, position, light.axis_cosine.xyz, light.axis_cosine.w, direction);
+    }
+    if (light.falloff_range.w > 0.5) { interval = fog_in_box(interval, light.low.xyz, light.high.xyz, direction); }
+    return interval;
+}
+
+// What of the light's intensity goes towards a point at `distance` from it, `towards` the point: the cone's soft edge and
+// the end of its range, as KHR_lights_punctual recommends them.
+float fog_falloff(FogLight light, vec3 towards, float distance)
+{
+    float factor = 1.0;
+    if (light.axis_cosine.w > -1.5) {
+        float cosine = dot(light.axis_cosine.xyz, towards) / max(distance, 1e-30);
+        float edge = clamp(cosine * light.falloff_range.x + light.falloff_range.y, 0.0, 1.0);
+        factor = edge * edge;
+    }
+    if (light.falloff_range.z > 0.0) {
+        float share = distance / light.falloff_range.z;
+        factor *= clamp(1.0 - share * share * share * share, 0.0, 1.0);
+    }
+    return factor;
+}
+
+// The airlight of one light along a ray of unit direction up to a surface at `distance`, which may be infinite
+// (above 1e30), W/sr/m2. `index` is what FOG_VISIBILITY gets.
+vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, float distance)
+{
+    vec2 interval = fog_interval(light, direction, distance);
+    if (interval.x >= interval.y) { return vec3(0.0); }
+    vec3 position = light.position_radius.xyz;
+    FogPath path = fog_path(position, direction, light.position_radius.w);
+    FogSegment segment = fog_segment(path, interval.x, interval.y - interval.x);
+    float least = min(medium.extinction.x, min(medium.extinction.y, medium.extinction.z));
+    FogTaps taps = fog_taps(path, segment, least);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < FOG_TAPS; ++i) {
+        FogTap tap = fog_tap(taps, path, segment, i);
+        float m = segment.start + tap.excess;
+        float at = fog_distance(path, m);
+        vec3 point = at * direction;
+        float to_light = 0.5 * (m + path.off_squared / m);
+        float weight = tap.weight * fog_falloff(light, point - position, to_light);
+        weight *= fog_phase(medium.phase, fog_cosine(path, m));
+#ifdef FOG_VISIBILITY
+        weight *= FOG_VISIBILITY(index, point);
+#endif
+#if FOG_HEIGHT
+        // Optical length of both legs, and the density where they meet.
+        float rise = point.y * medium.thinning;
+        float density = exp(-rise);
+        float legs = at * fog_mean_density(rise)
+            + to_light * density * fog_mean_density((position.y - point.y) * medium.thinning);
+        sum += weight * density * exp(-medium.extinction * legs);
+#else
+        sum += weight * exp(-medium.extinction * (segment.shortest + tap.excess));
+#endif
+    }
+    return medium.scattering * light.intensity_reach.rgb * sum;
+}

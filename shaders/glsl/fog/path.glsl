@@ -1,0 +1,56 @@
+// Light that is scattered once along a view ray: the geometry of its paths, without angles.
+//
+// The ray starts at the eye; the light lies `along` it and `off` it, both distances. At distance x on the ray the light
+// is d = sqrt(off^2 + (x - along)^2) away, and the path from it by x to the eye is x + d long. In terms of
+//     m = x + d - along > 0,    dm / (off^2 + m^2) = dx / (2 d^2),    cosine of the scattering angle (off^2 - m^2) / (off^2 + m^2)
+// every quantity is a sum of positive terms. arctan(m / off) is the half angle of Sun 2008, eq. 3.9 to 3.11.
+
+// A ray and a light.
+struct FogPath {
+    float along;
+    float off_squared; // squared distance of the light from the ray, plus its squared radius
+};
+
+// Part of a ray, by the lengths of the light paths over its points.
+struct FogSegment {
+    float start;    // m where it begins
+    float shortest; // x + d where it begins: no path of the segment is shorter
+    float excess;   // by how much the path over its end is longer
+};
+
+// A ray from the eye in a unit direction; `light` is relative to the eye. A light of a radius is the disc that faces each
+// point of the ray.
+FogPath fog_path(vec3 light, vec3 direction, float radius)
+{
+    vec3 off = cross(light, direction);
+    float along = dot(light, direction);
+    // A light on the ray itself has an airlight without end; what f32 can tell from it is as near as this.
+    float least = 1e-8 * abs(along) + 1e-12;
+    return FogPath(along, max(dot(off, off), least * least) + radius * radius);
+}
+
+// The part of the ray of a length from a distance on. An infinite length is one above 1e30. The length is told and not
+// the end, whose difference from the beginning would be lost in rounding.
+FogSegment fog_segment(FogPath path, float begin, float extent)
+{
+    float delta = begin - path.along;
+    float from = sqrt(path.off_squared + delta * delta);
+    float start = delta >= 0.0 ? delta + from : path.off_squared / (from - delta);
+    if (extent > 1e30) { return FogSegment(start, begin + from, extent); }
+    delta += extent;
+    float to = sqrt(path.off_squared + delta * delta);
+    float finish = delta >= 0.0 ? delta + to : path.off_squared / (to - delta);
+    return FogSegment(start, begin + from, extent * (start + finish) / (from + to));
+}
+
+// The cosine of the scattering angle where m is reached.
+float fog_cosine(FogPath path, float m)
+{
+    return (path.off_squared - m * m) / (path.off_squared + m * m);
+}
+
+// The distance along the ray where m is reached.
+float fog_distance(FogPath path, float m)
+{
+    return path.along + 0.5 * (m - path.off_squared / m);
+}
