@@ -17,6 +17,7 @@ mod feature;
 mod frame;
 mod functions;
 mod health;
+mod histories;
 mod memory;
 mod offer;
 #[cfg(feature = "open")]
@@ -44,6 +45,7 @@ pub use error::GpuError;
 pub use execute::{Execution, Record, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
 pub use health::{Health, HealthCounts};
+pub use histories::Histories;
 pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
 pub use offer::{Missing, Offer};
 pub use options::{DeviceMask, Options};

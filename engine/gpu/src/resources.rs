@@ -36,12 +36,15 @@ impl Imports {
     }
 
     fn set<T: Kind>(&mut self, handle: &Handle<T>, concrete: Concrete) -> &mut Self {
-        let index = handle.resource().index();
+        self.set_index(handle.resource().index(), concrete);
+        self
+    }
+
+    pub(crate) fn set_index(&mut self, index: usize, concrete: Concrete) {
         if self.0.len() <= index {
             self.0.resize(index + 1, None);
         }
         self.0[index] = Some(concrete);
-        self
     }
 }
 

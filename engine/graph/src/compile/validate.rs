@@ -4,7 +4,7 @@ use crate::access::{Access, writes};
 use crate::error::GraphError;
 use crate::graph::{Declaration, Resource};
 use crate::handle::ImageRange;
-use crate::history::Half;
+use crate::history::{Half, share_usage};
 use crate::options::Limits;
 use crate::pass::{Pass, PassKind, Use};
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
@@ -38,6 +38,7 @@ pub(super) fn validate(declaration: &mut Declaration, limits: &Limits) -> Result
             mend: mend.to_owned(),
         })?;
     }
+    share_usage(resources);
     for i in 0..exports.len() {
         let (before, rest) = exports.split_at_mut(i);
         let export = &mut rest[0];
