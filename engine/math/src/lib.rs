@@ -25,6 +25,7 @@ mod error;
 pub mod quadrature;
 pub mod sequence;
 pub mod sh;
+pub mod special;
 pub mod sphere;
 pub mod statistics;
 #[cfg(test)]
