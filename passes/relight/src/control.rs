@@ -1,59 +1,93 @@
-//! What changes from frame to frame without a new plan: rotations, and whether the environment is projected.
+//! What changes from frame to frame without a new plan: rotations, pre-exposure, and whether the environment is
+//! projected.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use airglow_math::World;
 use glam::DQuat;
 
 use crate::RelightError;
-use crate::rotation::{Orientation, Turn};
+use crate::rotation::{LightFrame, Orientation, Turn};
 
 /// A poisoned lock means a panic elsewhere while the data was whole: go on with it.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The rotations of a prepared frame. A plan that is recorded again reads what was set last.
+/// The rotations of a prepared frame, and its pre-exposure. A plan that is recorded again reads what was set last.
 #[derive(Clone, Debug)]
 pub struct Rotations {
+    current: Arc<Mutex<Current>>,
+}
+
+#[derive(Debug)]
+struct Current {
+    frame: LightFrame,
     /// From the light to the object space of each instance.
-    turns: Arc<Mutex<Vec<Turn>>>,
+    turns: Vec<Turn>,
 }
 
 impl Rotations {
-    pub(crate) fn new(light: DQuat, instances: &[Orientation]) -> Result<Self, RelightError> {
-        Ok(Self { turns: Arc::new(Mutex::new(turns(light, instances)?)) })
+    pub(crate) fn new(
+        frame: LightFrame,
+        light: DQuat,
+        instances: &[Orientation],
+    ) -> Result<Self, RelightError> {
+        let turns = turns(&frame, light, instances)?;
+        Ok(Self { current: Arc::new(Mutex::new(Current { frame, turns })) })
     }
 
     /// One fixed rotation by a unit quaternion.
     pub(crate) fn fixed(rotation: DQuat) -> Self {
-        Self { turns: Arc::new(Mutex::new(vec![Turn::rotation(rotation)])) }
+        let frame = LightFrame { orientation: Orientation::IDENTITY, factor: 1.0 };
+        Self { current: Arc::new(Mutex::new(Current { frame, turns: vec![Turn::rotation(rotation)] })) }
     }
 
-    /// Sets the rotation of the light in the world and that of each instance, in the order of the frame, each of any
-    /// length but zero: quaternions, or [`Orientation`]s where instances may be mirrored. It counts from the next recording on.
+    /// Sets the rotation of the light in the host's world and that of each instance, in the order of the frame, each of
+    /// any length but zero: quaternions, or [`Orientation`]s where instances may be mirrored. It counts from the next
+    /// recording on.
     ///
     /// # Errors
     /// [`RelightError::Math`] for a zero or non-finite quaternion, [`RelightError::Length`] unless there are as many
     /// instances as in the frame; nothing is changed then.
     pub fn set(&self, light: DQuat, instances: &[impl Into<Orientation> + Copy]) -> Result<(), RelightError> {
-        let turned = turns(light, instances)?;
-        let mut current = lock(&self.turns);
-        if turned.len() != current.len() {
-            let (expected, actual) = (current.len(), turned.len());
+        let mut current = lock(&self.current);
+        let turned = turns(&current.frame, light, instances)?;
+        if turned.len() != current.turns.len() {
+            let (expected, actual) = (current.turns.len(), turned.len());
             let name = "the frame".to_owned();
             return Err(RelightError::Length { name, what: "the rotations", expected, actual });
         }
-        *current = turned;
+        current.turns = turned;
         Ok(())
     }
 
-    pub(crate) fn get(&self) -> MutexGuard<'_, Vec<Turn>> {
-        lock(&self.turns)
+    /// Sets what results are multiplied with, above 0, from the next recording on.
+    ///
+    /// # Errors
+    /// [`RelightError::Math`] for any other number; nothing is changed then.
+    pub fn set_pre_exposure(&self, factor: f64) -> Result<(), RelightError> {
+        World { pre_exposure: factor, ..World::default() }.check()?;
+        let mut current = lock(&self.current);
+        current.frame.factor = factor;
+        for turn in &mut current.turns {
+            turn.factors = turn.factors.map(|before| factor.copysign(f64::from(before)) as f32);
+        }
+        Ok(())
+    }
+
+    /// From the light to the object space of each instance.
+    pub(crate) fn get(&self) -> Vec<Turn> {
+        lock(&self.current).turns.clone()
     }
 }
 
-fn turns(light: DQuat, instances: &[impl Into<Orientation> + Copy]) -> Result<Vec<Turn>, RelightError> {
-    instances.iter().map(|instance| Turn::to_object_space(light, (*instance).into())).collect()
+fn turns(
+    frame: &LightFrame,
+    light: DQuat,
+    instances: &[impl Into<Orientation> + Copy],
+) -> Result<Vec<Turn>, RelightError> {
+    instances.iter().map(|instance| frame.turn(light, (*instance).into())).collect()
 }
 
 /// Which revision of the environment was projected last.

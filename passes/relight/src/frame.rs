@@ -11,7 +11,7 @@ use crate::mesh::MeshId;
 use crate::rotation::Orientation;
 
 /// An equirectangular environment: linear Rec. 709 radiance, W/sr/m2, constant on each texel, the centre looking
-/// down -Z, u growing towards +X, v down.
+/// forward, u growing to the right, v down, whatever the axes of the host's world.
 #[derive(Clone, Copy, Debug)]
 pub struct Environment<I> {
     /// The image; only the first mip is read, texel by texel, without a sampler. Any float format; finite and not
@@ -23,7 +23,7 @@ pub struct Environment<I> {
     pub height: u32,
     /// A number that the host changes with the image's contents; the projection runs only when it does.
     pub revision: u64,
-    /// Turns the environment in the world; any length but zero.
+    /// Turns the environment in the host's world, about its axes; any length but zero.
     pub rotation: DQuat,
 }
 
@@ -34,14 +34,15 @@ pub enum Light<B, I> {
     None,
     /// An environment, projected and rotated into the frame of each instance. For [`LightKind::Uniform`](crate::LightKind).
     Environment(Environment<I>),
-    /// SH RGB from elsewhere, `vec4[order^2]` with w unused, rotated like an environment. For [`LightKind::Uniform`](crate::LightKind).
+    /// SH RGB about the axes of the host's world, `vec4[order^2]` with w unused, rotated like an environment. For
+    /// [`LightKind::Uniform`](crate::LightKind).
     Uniform {
         /// The coefficients, W/sr/m2.
         coefficients: B,
-        /// Turns the light in the world; any length but zero.
+        /// Turns the light in the host's world; any length but zero.
         rotation: DQuat,
     },
-    /// Each instance brings the light of its vertices. For [`LightKind::Vertex`](crate::LightKind).
+    /// Each instance brings the light of its vertices, in object space and multiplied with the pre-exposure. For [`LightKind::Vertex`](crate::LightKind).
     Vertices,
 }
 
@@ -50,7 +51,7 @@ pub enum Light<B, I> {
 pub struct Instance<B> {
     /// The mesh.
     pub mesh: MeshId,
-    /// From object space to the world, see [`instance_rotation`](crate::instance_rotation).
+    /// From object space to the host's world, see [`instance_rotation`](crate::instance_rotation).
     pub orientation: Orientation,
     /// With [`Light::Vertices`]: SH RGB of each vertex in object space, `[[f32; 3]; order^2]` a vertex.
     pub light: Option<B>,
@@ -101,8 +102,8 @@ pub struct Relit<B> {
     pub results: Option<B>,
     /// Where those of each instance lie.
     pub ranges: Vec<ResultRange>,
-    /// The environment's coefficients in its own frame, `vec4[order^2]`, for the vertex, fragment and compute shaders
-    /// of other passes.
+    /// The environment's coefficients as it comes in, neither turned nor multiplied with the pre-exposure, about
+    /// airglow's axes: `vec4[order^2]`, for the vertex, fragment and compute shaders of other passes.
     pub environment: Option<B>,
     /// Turns light and instances before the plan is recorded again; none for light of each vertex.
     pub rotations: Option<Rotations>,

@@ -11,7 +11,7 @@ use crate::frame::{Environment, Frame, Instance, Light, ResultRange};
 use crate::mesh::Mesh;
 use crate::pack::RECTANGLE_WIDTH;
 use crate::relight::{LightPipelines, RECTANGLE_FORMAT, Relight, alignment};
-use crate::rotation::Orientation;
+use crate::rotation::{LightFrame, Orientation};
 use crate::settings::{LightKind, Method, Output};
 use crate::stage::{Need, Pair, Prepared, Resource, Work};
 use crate::tables::map_frame;
@@ -99,14 +99,14 @@ impl Relight {
         builder: &mut Builder,
         frame: &Frame<B, I>,
     ) -> Result<Option<Rotations>, RelightError> {
-        let (source, turn) = match (&frame.light, self.settings.light) {
+        let (source, light_frame, turn) = match (&frame.light, self.settings.light) {
             (Light::Environment(environment), LightKind::Uniform) => {
                 self.environment(context, builder, environment)?;
-                (Resource::EnvironmentLight, environment.rotation)
+                (Resource::EnvironmentLight, LightFrame::map(&self.world)?, environment.rotation)
             }
             (Light::Uniform { rotation, .. }, LightKind::Uniform) => {
                 builder.host(Resource::UniformLight);
-                (Resource::UniformLight, *rotation)
+                (Resource::UniformLight, LightFrame::host(&self.world), *rotation)
             }
             (Light::Vertices, LightKind::Vertex) | (Light::None, _) => return Ok(None),
             _ => {
@@ -119,7 +119,7 @@ impl Relight {
         let Some(pipelines) = &self.light_pipelines else { return Ok(None) };
         let instances: Vec<Orientation> =
             frame.instances.iter().map(|instance| instance.orientation).collect();
-        let rotations = Rotations::new(turn, &instances)?;
+        let rotations = Rotations::new(light_frame, turn, &instances)?;
         let (count, stride) = (instances.len() as u32, self.light_stride());
         builder.scratch(Resource::Lights, u64::from(count) * stride);
         let work = Work::Rotate {

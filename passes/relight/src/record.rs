@@ -143,7 +143,7 @@ impl Stage {
                 recorder.dispatch([*coefficients, 1, 1])
             }
             Work::Rotate { pipeline, source, target, rotations, strides } => {
-                let values = rotations.get().clone();
+                let values = rotations.get();
                 let turns = recorder.upload(&values)?;
                 let bound = [
                     Binding::storage(0, bindings.buffer(*source)?),

@@ -9,6 +9,7 @@ use airglow_gpu::{
     GraphicsPipelineDesc, Label, Location, Requirements,
 };
 use airglow_graph::BufferDesc;
+use airglow_math::World;
 
 use crate::RelightError;
 use crate::control::Projected;
@@ -51,6 +52,7 @@ pub(crate) struct Map {
 /// Made once for a device and [`Settings`]; holds pipelines, meshes and tables, and no frame.
 pub struct Relight {
     pub(crate) settings: Settings,
+    pub(crate) world: World,
     pub(crate) chunk_vertices: u32,
     pub(crate) meshes: Meshes,
     /// Those that the settings can need.
@@ -128,6 +130,7 @@ impl Relight {
         };
         Ok(Self {
             settings,
+            world: World::default(),
             chunk_vertices,
             meshes: Meshes::default(),
             vertex_pipelines: vertex_pipelines(context, &settings)?,
@@ -142,6 +145,18 @@ impl Relight {
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// States the host's world, in whose axes rotations of light and instances and light as SH RGB come in from the
+    /// next frame on, and whose pre-exposure results are multiplied with. Before, it is [`World::default`]. Object
+    /// space, and so the bake, is in any axes.
+    ///
+    /// # Errors
+    /// [`RelightError::Math`] for what no host can mean; the world stays then.
+    pub fn set_world(&mut self, world: World) -> Result<(), RelightError> {
+        world.check()?;
+        self.world = world;
+        Ok(())
     }
 
     /// Adds a mesh of `vertices` vertices, in the host's order. `vectors` are vertex-major, order^2 values a vertex:

@@ -1,6 +1,6 @@
 //! Rotations of light, prepared on the CPU: unit quaternions in f64, rounded once.
 
-use airglow_math::MathError;
+use airglow_math::{MathError, World};
 use glam::{DMat3, DQuat};
 
 use crate::RelightError;
@@ -43,20 +43,44 @@ impl From<DQuat> for Orientation {
 pub(crate) struct Turn {
     /// x, y, z, w, unit length.
     pub quaternion: [f32; 4],
-    pub odd_sign: f32,
-    padding: [f32; 3],
+    /// Of even and of odd bands.
+    pub factors: [f32; 2],
+    padding: [f32; 2],
 }
 
 impl Turn {
-    /// From the light to the object space of an instance.
-    pub(crate) fn to_object_space(light: DQuat, instance: Orientation) -> Result<Self, RelightError> {
-        let rotation = object_space(light, instance.rotation)?;
-        Ok(Self { odd_sign: instance.band_sign(1) as f32, ..Self::rotation(rotation) })
-    }
-
     /// By a unit quaternion.
     pub(crate) fn rotation(unit: DQuat) -> Self {
-        Self { quaternion: unit.as_quat().to_array(), odd_sign: 1.0, padding: [0.0; 3] }
+        Self { quaternion: unit.as_quat().to_array(), factors: [1.0; 2], padding: [0.0; 2] }
+    }
+}
+
+/// What the host's world makes of a light before an instance sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LightFrame {
+    /// From the axes of the light's coefficients to the host's.
+    pub orientation: Orientation,
+    /// A factor on the light: the pre-exposure.
+    pub factor: f64,
+}
+
+impl LightFrame {
+    /// Of light about the host's own axes.
+    pub(crate) fn host(world: &World) -> Self {
+        Self { orientation: Orientation::IDENTITY, factor: world.pre_exposure }
+    }
+
+    /// Of an environment, whose centre looks forward and whose first row is up.
+    pub(crate) fn map(world: &World) -> Result<Self, RelightError> {
+        Ok(Self { orientation: instance_rotation(world.axes.host_from_airglow())?, ..Self::host(world) })
+    }
+
+    /// From the light's coefficients, turned by `light` in the host's world, to the object space of an instance.
+    pub(crate) fn turn(&self, light: DQuat, instance: Orientation) -> Result<Turn, RelightError> {
+        let rotation = object_space(light, instance.rotation)? * self.orientation.rotation;
+        let inverted = instance.inverted != self.orientation.inverted;
+        let factors = [0, 1].map(|l| (self.factor * Orientation { rotation, inverted }.band_sign(l)) as f32);
+        Ok(Turn { factors, ..Turn::rotation(rotation) })
     }
 }
 

@@ -151,6 +151,11 @@ fn both_roads_give_the_same_bits_and_rotations_follow() {
         rotations.set(turn * -2.0, &[second]).unwrap();
         let expected = without_graph(&fixture, settings, &vectors, &texels, turn, second);
         assert_eq!(run(&fixture, &mut execution, imports), expected, "{method:?}, turned");
+        // A power of two as pre-exposure changes exponents only.
+        rotations.set_pre_exposure(8.0).unwrap();
+        let exposed = |rgba: &[f32]| [8.0 * rgba[0], 8.0 * rgba[1], 8.0 * rgba[2], 1.0];
+        let expected: Vec<f32> = expected.chunks_exact(4).flat_map(exposed).collect();
+        assert_eq!(run(&fixture, &mut execution, imports), expected, "{method:?}, pre-exposed");
         assert!(rotations.set(turn, &[first, second]).is_err(), "two rotations for one instance");
         assert!(rotations.set(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), &[first]).is_err(), "no rotation at all");
     }

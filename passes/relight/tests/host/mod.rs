@@ -1,6 +1,9 @@
 //! The host that the tests of this room play: one device under validation, one frame at a time.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod draw;
+pub mod ellipsoid;
+
 use airglow_relight::{Bench, Method, Relight, Settings};
 use airglow_tests::device::{Fixture, fixture_with};
 
