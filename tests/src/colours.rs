@@ -1,7 +1,7 @@
 //! A small kernel and a buffer for it: what tests of the device layer record when it does not matter what.
 
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, ComputePipeline, Context, Label, Location};
+use airglow_gpu::{Binding, Buffer, ComputePipeline, Context, GpuError, Label, Location, Recorder};
 use airglow_graph::BufferDesc;
 
 use crate::workload;
@@ -36,4 +36,20 @@ pub fn storage(context: &Context, owner: &str, size: u64) -> Buffer {
     context
         .create_buffer(Label::new(owner, "colours"), &desc, Location::Device)
         .expect("memory for a small buffer")
+}
+
+/// Records the kernel: every colour is `tint`.
+///
+/// # Errors
+/// Those of the recorder.
+pub fn record(
+    recorder: &mut Recorder<'_>,
+    pipeline: &ComputePipeline,
+    buffer: &Buffer,
+    tint: f32,
+) -> Result<(), GpuError> {
+    let tint = recorder.upload(&[[tint; 4]])?;
+    recorder.bind_compute(pipeline, &[Binding::storage(0, buffer), Binding::uniform(1, &tint)])?;
+    recorder.push_constants(&COUNT)?;
+    recorder.dispatch([COUNT.div_ceil(64), 1, 1])
 }
