@@ -11,6 +11,7 @@ First steps:
   airglow devices                                 list the Vulkan devices of this machine
   airglow render assets/scenes/spot.toml -o spot.png
                                                   bake (once, then cached) and draw a scene
+  airglow show assets/scenes/spot.toml            the same, live in a window
   airglow plan assets/scenes/spot.toml            show what a frame does, and what it leaves out
   airglow report relight -o out/report            measure the pass: error against time
 
@@ -32,8 +33,9 @@ pub struct Cli {
     pub command: Command,
 }
 
-/// Options that every command understands.
+/// Options that every command understands, in help below the command's own.
 #[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Global options")]
 pub struct Global {
     /// Vulkan device: its index in `airglow devices`, part of its name, or a kind (discrete, integrated,
     /// virtual, cpu). Without it the fastest kind present is taken.

@@ -19,6 +19,11 @@ pub fn print(text: &str) -> Outcome {
     }
 }
 
+/// Prints a line for whoever watches. Where nobody does any more (`2>&1 | head`), work goes on.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 /// How the user wants to be told things.
 #[derive(Clone, Debug)]
 pub struct Output {
@@ -40,13 +45,13 @@ impl Output {
     /// A remark on standard error; silent with `--quiet`.
     pub fn say(&self, remark: impl AsRef<str>) {
         if !self.quiet {
-            eprintln!("{}", remark.as_ref());
+            tell(remark.as_ref());
         }
     }
 
     /// A warning on standard error, printed even with `--quiet`.
     pub fn warn(&self, warning: impl AsRef<str>) {
-        eprintln!("warning: {}", warning.as_ref());
+        tell(&format!("warning: {}", warning.as_ref()));
     }
 
     /// The result: `value` as JSON with `--json`, else what `text` makes of it.
@@ -67,7 +72,7 @@ impl Output {
             // What could not be printed is told below all the same.
             let _ = print(&value.to_string());
         }
-        eprintln!("error: {failure}");
+        tell(&format!("error: {failure}"));
     }
 
     /// A progress bar over `length` steps of `unit`; hidden with `--quiet` and when standard error is no

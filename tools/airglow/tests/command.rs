@@ -4,7 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -49,6 +49,50 @@ fn exit_codes_say_what_went_wrong() {
     assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(String::from_utf8_lossy(&output.stdout).contains("\"kind\":\"device\""));
     assert!(!here.join("a.png").exists(), "nothing is half written");
+}
+
+/// What `| head -1` and `2>&1 | head -1` do to the command, at their earliest.
+#[test]
+fn a_reader_that_leaves_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let spot = path(&root(), "assets/mesh/spot.glb");
+    let start = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));
+        command.current_dir(folder.path()).args(arguments).args(["--device", "cpu"]);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let mut left = start(&["plan", &spot]);
+    drop(left.stdout.take());
+    let output = left.wait_with_output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !errors.contains("panicked"), "{}: {errors}", output.status);
+    assert!(!errors.contains("error:"), "{errors}");
+
+    let draws = ["render", &spot, "-o", "a.png", "--size", "32x24", "--frames", "1"];
+    for (arguments, code) in [(&draws[..], 0), (&["render", "none.toml", "-o", "b.png"], 5)] {
+        let mut left = start(arguments);
+        drop((left.stdout.take(), left.stderr.take()));
+        assert_eq!(left.wait().unwrap().code(), Some(code), "{arguments:?}");
+    }
+    assert!(folder.path().join("a.png").exists(), "work goes on");
+}
+
+/// Newcomers read help from the top: what the command is for, then what all commands have.
+#[test]
+fn help_has_the_options_of_the_command_before_those_of_all() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in
+        ["devices", "bake", "render", "show", "compare", "plan", "report", "stability", "explain", "eval"]
+    {
+        let help = succeeds(folder.path(), &[command, "--help"]);
+        let (own, global) = help.split_once("Global options:").unwrap();
+        for option in ["--device", "--validate", "--quiet", "--json"] {
+            let lists = |text: &str| {
+                text.lines().any(|line| line.trim_start().trim_start_matches("-q, ").starts_with(option))
+            };
+            assert!(lists(global) && !lists(own), "{option} in the help of {command}: {help}");
+        }
+    }
 }
 
 #[test]

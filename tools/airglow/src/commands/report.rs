@@ -25,7 +25,8 @@ use crate::report::write;
 #[command(after_help = "Examples:
   airglow report relight -o out/report
   airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
-  airglow report --merge docs/llvmpipe.json --merge docs/h200.json -o out/both     overlay devices")]
+  airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
+                                                  overlay devices: a kept run and one of your own")]
 pub struct Arguments {
     /// The pass.
     #[arg(value_enum, default_value_t = Pass::Relight)]
