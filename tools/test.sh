@@ -35,6 +35,7 @@ step formatting cargo fmt --all --check
 # With the features of the whole workspace, so that its dependencies are those of the steps below.
 step xtask cargo build --locked --workspace --bin xtask
 step shaders "${CARGO_TARGET_DIR:-target}/debug/xtask" shaders --check
+step header "${CARGO_TARGET_DIR:-target}/debug/xtask" header --check
 step portability "${CARGO_TARGET_DIR:-target}/debug/xtask" portability --check
 step clippy cargo clippy --locked --workspace --all-targets -- -D warnings
 step documentation env RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --lib --no-deps

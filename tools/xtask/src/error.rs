@@ -37,6 +37,17 @@ pub enum Error {
     /// The committed table of translations is not what the modules give.
     #[error("{0} is not what the modules give; run `cargo run -p xtask -- portability`")]
     StaleTable(PathBuf),
+    /// The C header cannot be made.
+    #[error("{path}: {problem}")]
+    Header {
+        /// The source it is made from.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The committed C header is not what its source gives.
+    #[error("{0} is not what its source gives; run `cargo run -p xtask -- header`")]
+    StaleHeader(PathBuf),
     /// No room of the manifest has the name asked for.
     #[error("no entry of the manifest lies in a room named `{0}`")]
     NoSuchRoom(String),

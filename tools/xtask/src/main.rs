@@ -7,6 +7,7 @@ mod compile;
 mod debug_set;
 mod error;
 mod files;
+mod header;
 mod manifest;
 mod mesh;
 mod portability;
@@ -47,6 +48,12 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
+    /// Write passes/capi/include/airglow.h, the header of the library for hosts in C and C++
+    Header {
+        /// Write nothing; fail when the committed header differs
+        #[arg(long)]
+        check: bool,
+    },
     /// Make a pass's room from the template: crate, shader, tests, and the lines that name it
     Room {
         /// One lower-case word, such as `fog`
@@ -79,6 +86,7 @@ fn run(command: Command) -> Result<(), error::Error> {
         Command::Cloister => cloister::make(&workspace().join("assets")),
         Command::Room { name, remove: false } => room::make(&workspace(), &name),
         Command::Room { name, remove: true } => room::remove(&workspace(), &name),
+        Command::Header { check } => header::run(&workspace(), check),
         Command::Portability { check } => portability::run(&workspace(), check),
         Command::Shaders { room, debug_set: Some(folder), .. } => {
             debug_set::write(&glsl, &folder, &shaders::modules(&glsl, room.as_deref())?)

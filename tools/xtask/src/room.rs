@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::error::Error;
-use crate::{files, portability, room_lines, shaders};
+use crate::{files, header, portability, room_lines, shaders};
 
 /// Where each file of a room lies, and its text. `__room__` stands for the room's name, `__Room__` for that of its type.
 const TEMPLATE: [(&str, &str); 13] = [
@@ -64,15 +64,18 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
     if !is_word(name) || !workspace.join("passes").join(name).join("Cargo.toml").is_file() {
         return Err(refuse("there is no such crate below passes/"));
     }
-    let edited = room_lines::edit(workspace, |file, text| Some(room_lines::remove(file, text, name)))?;
-    for folder in ["passes", "shaders/glsl", "shaders/spirv"] {
+    let mut edited = room_lines::edit(workspace, |file, text| Some(room_lines::remove(file, text, name)))?;
+    for folder in ["passes", "passes/capi/src", "shaders/glsl", "shaders/spirv"] {
         let folder = workspace.join(folder).join(name);
         if folder.exists() {
             fs::remove_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
         }
     }
+    // A place may have gone with the room.
+    edited.retain(|(path, _)| path.is_file());
     room_lines::write(&edited)?;
     run(workspace, "cargo", &["update", "--quiet", "--workspace", "--offline"])?;
+    header::run(workspace, false)?;
     portability::run(workspace, false)
 }
 

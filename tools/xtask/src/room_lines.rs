@@ -20,14 +20,20 @@ pub enum Place {
     Shaders,
     /// tools/airglow/Cargo.toml: a feature for each room that the tool uses.
     Tool,
+    /// passes/capi/Cargo.toml: an optional dependency and a feature for each room that hosts in C can use.
+    Capi,
+    /// passes/capi/src/lib.rs: the module of each such room.
+    CapiLibrary,
 }
 
-const PLACES: [(Place, &str); 5] = [
+const PLACES: [(Place, &str); 7] = [
     (Place::Workspace, "Cargo.toml"),
     (Place::Umbrella, "passes/Cargo.toml"),
     (Place::UmbrellaLibrary, "passes/src/lib.rs"),
     (Place::Shaders, "shaders/glsl/manifest.toml"),
     (Place::Tool, "tools/airglow/Cargo.toml"),
+    (Place::Capi, "passes/capi/Cargo.toml"),
+    (Place::CapiLibrary, "passes/capi/src/lib.rs"),
 ];
 
 /// The texts of all places after `change`; nothing is written.
@@ -45,7 +51,10 @@ pub fn edit(
         let changed = change(place, &text).ok_or_else(|| Error::Manifest { path: path.clone(), message })?;
         Ok((path, changed))
     };
-    PLACES.into_iter().map(edit).collect()
+    // The library for hosts in C is a room, too, and may be gone.
+    let present =
+        |(_, file): &(Place, &str)| !file.starts_with("passes/capi/") || workspace.join(file).is_file();
+    PLACES.into_iter().filter(present).map(edit).collect()
 }
 
 /// Writes what [`edit`] made.
@@ -77,7 +86,8 @@ pub fn add(place: Place, text: &str, name: &str) -> Option<String> {
             Some(format!("{text}#[cfg(feature = \"{name}\")]\npub use airglow_{name} as {name};\n"))
         }
         Place::Shaders => Some(format!("{text}\n[[entry]]\nfile = \"{name}/expose.comp\"\n")),
-        Place::Tool => Some(text.to_owned()), // whoever uses the room there adds its feature
+        // Whoever uses the room there adds its lines.
+        Place::Tool | Place::Capi | Place::CapiLibrary => Some(text.to_owned()),
     }
 }
 
@@ -88,7 +98,7 @@ pub fn remove(place: Place, text: &str, name: &str) -> String {
             let (member, dependency) = (format!("\"passes/{name}\","), format!("airglow-{name} "));
             drop_lines(text, |line| line.trim_start() == member || line.starts_with(&dependency))
         }
-        Place::Umbrella | Place::Tool => {
+        Place::Umbrella | Place::Tool | Place::Capi => {
             let (dependency, feature) = (format!("airglow-{name} "), format!("{name} = ["));
             let text = drop_lines(text, |line| line.starts_with(&dependency) || line.starts_with(&feature));
             let default = |line: &str| {
@@ -97,10 +107,10 @@ pub fn remove(place: Place, text: &str, name: &str) -> String {
             };
             text.lines().map(|line| default(line) + "\n").collect()
         }
-        Place::UmbrellaLibrary => {
-            let (switch, export) =
-                (format!("#[cfg(feature = \"{name}\")]"), format!("pub use airglow_{name} "));
-            drop_lines(text, |line| line == switch || line.starts_with(&export))
+        Place::UmbrellaLibrary | Place::CapiLibrary => {
+            let switch = format!("#[cfg(feature = \"{name}\")]");
+            let (export, module) = (format!("pub use airglow_{name} "), format!("pub mod {name};"));
+            drop_lines(text, |line| line == switch || line.starts_with(&export) || line == module)
         }
         Place::Shaders => {
             // Entries are paragraphs.
@@ -156,7 +166,8 @@ mod tests {
         for (place, file) in PLACES {
             let text = fs::read_to_string(crate::workspace().join(file)).unwrap();
             let added = add(place, &text, "anotherroom").unwrap();
-            assert_eq!(added != text, place != Place::Tool, "{file}");
+            let by_hand = [Place::Tool, Place::Capi, Place::CapiLibrary].contains(&place);
+            assert_eq!(added != text, !by_hand, "{file}");
             assert_eq!(remove(place, &added, "anotherroom"), text, "{file}");
         }
     }

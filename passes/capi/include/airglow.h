@@ -1,0 +1,1572 @@
+/* airglow: real-time lighting passes for Vulkan. MIT OR Apache-2.0.
+ *
+ * Made from passes/capi by `cargo run -p xtask -- header`; edit the source there. It needs no other header: handles of
+ * Vulkan are integers, 0 for null, and flags, formats, layouts and results are Vulkan's own numbers.
+ *
+ * Structures that begin with `struct_size` are versioned. Clear them and set it to their sizeof; zero is every other
+ * field's default unless it says otherwise. A smaller structure, of an older header, is accepted; a larger one, of a
+ * newer header, while the part unknown to this version is zero.
+ *
+ * Functions return a status. Their last argument, which may be null, takes the message. No panic leaves the library.
+ */
+
+#ifndef AIRGLOW_H
+#define AIRGLOW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * The instance brings light of each vertex, bound as `AIRGLOW_RESOURCE_VERTEX_LIGHT`.
+ */
+#define AIRGLOW_INPUT_LIGHT 1
+
+/**
+ * The instance brings dynamic visibility, bound as `AIRGLOW_RESOURCE_VISIBILITY`.
+ */
+#define AIRGLOW_INPUT_VISIBILITY 2
+
+/**
+ * The instance brings normals, bound as `AIRGLOW_RESOURCE_NORMALS`.
+ */
+#define AIRGLOW_INPUT_NORMALS 4
+
+/**
+ * Bytes of the message of an error, the nul included.
+ */
+#define AIRGLOW_MESSAGE_SIZE 1008
+
+/**
+ * How a call went.
+ */
+enum AirglowStatus
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * It did what was asked.
+   */
+  AIRGLOW_STATUS_OK = 0,
+  /**
+   * An array or text of the caller was too small: its count or length says what is needed, the beginning is filled.
+   */
+  AIRGLOW_STATUS_INCOMPLETE = 1,
+  /**
+   * An argument is null, misaligned, out of range, or does not fit the others. Nothing was changed.
+   */
+  AIRGLOW_STATUS_INVALID_ARGUMENT = 2,
+  /**
+   * The `struct_size` of a structure is zero, too small, or larger with a tail that is not zero.
+   */
+  AIRGLOW_STATUS_INVALID_STRUCT = 3,
+  /**
+   * The device lacks something required; the message names it.
+   */
+  AIRGLOW_STATUS_MISSING = 4,
+  /**
+   * No memory, or none left in the budget. Nothing was changed.
+   */
+  AIRGLOW_STATUS_OUT_OF_MEMORY = 5,
+  /**
+   * The device is lost: nothing more can be recorded; dropping everything stays safe.
+   */
+  AIRGLOW_STATUS_DEVICE_LOST = 6,
+  /**
+   * Another Vulkan call failed; `vulkan_result` in the error says with what.
+   */
+  AIRGLOW_STATUS_VULKAN = 7,
+  /**
+   * The caller's own callback asked to stop.
+   */
+  AIRGLOW_STATUS_CANCELLED = 8,
+  /**
+   * A defect of the library: it panicked, and the panic was caught. Drop the objects of the call.
+   */
+  AIRGLOW_STATUS_INTERNAL = 9,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowStatus AirglowStatus;
+#else
+typedef uint32_t AirglowStatus;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What visibility is below the tangent plane of a vertex, where no ray is traced.
+ */
+enum AirglowBelowHorizon
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The share of the cosine-weighted upper hemisphere that is free.
+   */
+  AIRGLOW_BELOW_HORIZON_MEAN = 0,
+  /**
+   * 1: what other geometry blocks, without the vertex's own surface.
+   */
+  AIRGLOW_BELOW_HORIZON_VISIBLE = 1,
+  /**
+   * 0: the surface blocks its own lower hemisphere.
+   */
+  AIRGLOW_BELOW_HORIZON_BLOCKED = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowBelowHorizon AirglowBelowHorizon;
+#else
+typedef uint32_t AirglowBelowHorizon;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * The light of a frame.
+ */
+enum AirglowLight
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * There is none: the pass is left out, and nothing is written.
+   */
+  AIRGLOW_LIGHT_NONE = 0,
+  /**
+   * The environment given with `airglow_relight_set_environment`.
+   */
+  AIRGLOW_LIGHT_ENVIRONMENT = 1,
+  /**
+   * An environment in an image of the host's, bound as `AIRGLOW_RESOURCE_ENVIRONMENT`.
+   */
+  AIRGLOW_LIGHT_ENVIRONMENT_IMAGE = 2,
+  /**
+   * SH RGB in a buffer of the host's, bound as `AIRGLOW_RESOURCE_UNIFORM_LIGHT`: four floats a coefficient, the
+   * fourth unused.
+   */
+  AIRGLOW_LIGHT_UNIFORM = 3,
+  /**
+   * Each instance brings the light of its vertices; for `AIRGLOW_LIGHT_KIND_VERTEX`.
+   */
+  AIRGLOW_LIGHT_VERTICES = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowLight AirglowLight;
+#else
+typedef uint32_t AirglowLight;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What kind of light arrives.
+ */
+enum AirglowLightKind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * One SH RGB vector for a mesh, rotated into the space of each instance.
+   */
+  AIRGLOW_LIGHT_KIND_UNIFORM = 0,
+  /**
+   * One SH RGB vector for each vertex, already in the space of the instance.
+   */
+  AIRGLOW_LIGHT_KIND_VERTEX = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowLightKind AirglowLightKind;
+#else
+typedef uint32_t AirglowLightKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Who touches a piece of memory.
+ */
+enum AirglowLocation
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The device only.
+   */
+  AIRGLOW_LOCATION_DEVICE = 0,
+  /**
+   * Written by the CPU, read by the device: mapped, host-coherent.
+   */
+  AIRGLOW_LOCATION_UPLOAD = 1,
+  /**
+   * Written by the device, read by the CPU: mapped, host-coherent, cached where there is a choice.
+   */
+  AIRGLOW_LOCATION_READBACK = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowLocation AirglowLocation;
+#else
+typedef uint32_t AirglowLocation;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How it is written.
+ */
+enum AirglowMethod
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * A compute pass writes the vertex buffer.
+   */
+  AIRGLOW_METHOD_COMPUTE = 0,
+  /**
+   * A fragment pass over a packed rectangle, copied into the vertex buffer; colours only, the same bits.
+   */
+  AIRGLOW_METHOD_FRAGMENT = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowMethod AirglowMethod;
+#else
+typedef uint32_t AirglowMethod;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What an `AirglowNeed` is about.
+ */
+enum AirglowNeedKind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The API version of instance and device: `value` as `VK_MAKE_API_VERSION` packs it.
+   */
+  AIRGLOW_NEED_KIND_API_VERSION = 0,
+  /**
+   * An extension of the instance.
+   */
+  AIRGLOW_NEED_KIND_INSTANCE_EXTENSION = 1,
+  /**
+   * An extension of the device.
+   */
+  AIRGLOW_NEED_KIND_DEVICE_EXTENSION = 2,
+  /**
+   * An extension of a device below Vulkan 1.3, where it stands for a feature that is core later.
+   */
+  AIRGLOW_NEED_KIND_DEVICE_EXTENSION_BELOW13 = 3,
+  /**
+   * A feature, by its field's name in the Vulkan specification.
+   */
+  AIRGLOW_NEED_KIND_FEATURE = 4,
+  /**
+   * A limit by its field's name; `value` is the least it may be, in its own unit.
+   */
+  AIRGLOW_NEED_KIND_LIMIT = 5,
+  /**
+   * A format: `value` is the `VkFormat`, `flags` the `VkFormatFeatureFlags` asked of images with optimal tiling, and
+   * of buffers for vertex input.
+   */
+  AIRGLOW_NEED_KIND_FORMAT = 6,
+  /**
+   * The queue family that commands are submitted to: `flags` are its `VkQueueFlags`.
+   */
+  AIRGLOW_NEED_KIND_QUEUE = 7,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowNeedKind AirglowNeedKind;
+#else
+typedef uint32_t AirglowNeedKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * Where a resource of a frame comes from.
+ */
+enum AirglowOrigin
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The library keeps it and synchronises it.
+   */
+  AIRGLOW_ORIGIN_LIBRARY = 0,
+  /**
+   * The host gives it, bound when the frame is recorded.
+   */
+  AIRGLOW_ORIGIN_HOST = 1,
+  /**
+   * It lives within the frame: bound by the host, or made by `airglow_prepared_make_scratch`.
+   */
+  AIRGLOW_ORIGIN_SCRATCH = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowOrigin AirglowOrigin;
+#else
+typedef uint32_t AirglowOrigin;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What is written for each vertex.
+ */
+enum AirglowOutput
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The colour: four floats, radiance of a white diffuse surface in W/sr/m2, the fourth 1.
+   */
+  AIRGLOW_OUTPUT_COLOUR = 0,
+  /**
+   * The incident radiance, SH RGB: `3 * order^2` floats, for shaders that need direction.
+   */
+  AIRGLOW_OUTPUT_INCIDENT = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowOutput AirglowOutput;
+#else
+typedef uint32_t AirglowOutput;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How a plan is written.
+ */
+enum AirglowPlanFormat
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Text made to be compared.
+   */
+  AIRGLOW_PLAN_FORMAT_TEXT = 0,
+  /**
+   * JSON.
+   */
+  AIRGLOW_PLAN_FORMAT_JSON = 1,
+  /**
+   * A mermaid diagram.
+   */
+  AIRGLOW_PLAN_FORMAT_MERMAID = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowPlanFormat AirglowPlanFormat;
+#else
+typedef uint32_t AirglowPlanFormat;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What a step of the pass uses. With `AIRGLOW_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
+ * `..._VERTEX_LIGHT`, `..._VISIBILITY` and `..._NORMALS` an instance's in the frame; otherwise it is 0.
+ */
+enum AirglowResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The environment's image.
+   */
+  AIRGLOW_RESOURCE_ENVIRONMENT = 0,
+  /**
+   * Integrals of the basis over the columns of the environment.
+   */
+  AIRGLOW_RESOURCE_COLUMN_TABLE = 1,
+  /**
+   * Integrals of the basis over the rows of the environment.
+   */
+  AIRGLOW_RESOURCE_ROW_TABLE = 2,
+  /**
+   * Sums over the columns of each row.
+   */
+  AIRGLOW_RESOURCE_ROW_SUMS = 3,
+  /**
+   * The environment's coefficients in the frame of its map.
+   */
+  AIRGLOW_RESOURCE_MAP_COEFFICIENTS = 4,
+  /**
+   * The environment's coefficients; kept from frame to frame.
+   */
+  AIRGLOW_RESOURCE_ENVIRONMENT_LIGHT = 5,
+  /**
+   * SH RGB light of the host.
+   */
+  AIRGLOW_RESOURCE_UNIFORM_LIGHT = 6,
+  /**
+   * The light in the space of each instance.
+   */
+  AIRGLOW_RESOURCE_LIGHTS = 7,
+  /**
+   * The sparse triple-product tensor.
+   */
+  AIRGLOW_RESOURCE_TENSOR = 8,
+  /**
+   * The product matrix of each instance's light.
+   */
+  AIRGLOW_RESOURCE_MATRICES = 9,
+  /**
+   * The baked vectors of a mesh.
+   */
+  AIRGLOW_RESOURCE_VECTORS = 10,
+  /**
+   * The light of each vertex of an instance: `3 * order^2` floats a vertex.
+   */
+  AIRGLOW_RESOURCE_VERTEX_LIGHT = 11,
+  /**
+   * The dynamic visibility of each vertex of an instance: `order^2` floats a vertex.
+   */
+  AIRGLOW_RESOURCE_VISIBILITY = 12,
+  /**
+   * The normals of an instance's vertices: 3 floats a vertex.
+   */
+  AIRGLOW_RESOURCE_NORMALS = 13,
+  /**
+   * The packed rectangle of the fragment method.
+   */
+  AIRGLOW_RESOURCE_RECTANGLE = 14,
+  /**
+   * The results of all instances.
+   */
+  AIRGLOW_RESOURCE_RESULTS = 15,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowResource AirglowResource;
+#else
+typedef uint32_t AirglowResource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How the vectors of a mesh are stored on the device.
+ */
+enum AirglowStorage
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * 32-bit floats.
+   */
+  AIRGLOW_STORAGE_F32 = 0,
+  /**
+   * 16-bit floats, half the bytes; values up to 65504.
+   */
+  AIRGLOW_STORAGE_F16 = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowStorage AirglowStorage;
+#else
+typedef uint32_t AirglowStorage;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * A device as the library sees it. Many can live in one process. Any thread may use it; `airglow_context_begin_frame`
+ * and `airglow_context_drop` are to be called while no other call uses it.
+ */
+typedef struct AirglowContext AirglowContext;
+
+/**
+ * A frame of the pass, ready to be recorded, and again in later frames while meshes, light and sizes stay. One thread
+ * at a time.
+ */
+typedef struct AirglowPrepared AirglowPrepared;
+
+/**
+ * The relight pass: kernels, tables and meshes for one context and one choice of settings. Any thread may use it.
+ */
+typedef struct AirglowRelight AirglowRelight;
+
+/**
+ * What passes ask of a device. Made empty, which is what the library itself needs; each pass adds its own
+ * (`airglow_relight_require`). One thread at a time.
+ */
+typedef struct AirglowRequirements AirglowRequirements;
+
+/**
+ * Triangles that block light, from both sides, beside those of the mesh itself. Elements of arrays never grow.
+ */
+typedef struct AirglowOccluder {
+  /**
+   * Name used in errors; null for "occluder".
+   */
+  const char *name;
+  /**
+   * Three floats a vertex, metres.
+   */
+  const float *positions;
+  /**
+   * Vertices.
+   */
+  size_t vertex_count;
+  /**
+   * Three a triangle.
+   */
+  const uint32_t *indices;
+  /**
+   * Indices.
+   */
+  size_t index_count;
+  /**
+   * From its space to the object space of the mesh: affine, column-major. All zero is the identity.
+   */
+  float transform[16];
+} AirglowOccluder;
+
+/**
+ * A mesh to be baked, and how. Positions, normals and vectors are in its object space.
+ */
+typedef struct AirglowBakeInfo {
+  /**
+   * `sizeof(AirglowBakeInfo)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Bands, 1 to 6: order^2 coefficients a vertex. 0 is 4.
+   */
+  uint32_t order;
+  /**
+   * Name used in errors; null for "mesh".
+   */
+  const char *name;
+  /**
+   * Three floats a vertex, metres.
+   */
+  const float *positions;
+  /**
+   * Three floats a vertex, outward, of any length; a zero normal gives a zero vector.
+   */
+  const float *normals;
+  /**
+   * Vertices.
+   */
+  size_t vertex_count;
+  /**
+   * Three a triangle.
+   */
+  const uint32_t *indices;
+  /**
+   * Indices.
+   */
+  size_t index_count;
+  /**
+   * Rays a vertex, 1 to 1048576. 0 is 256.
+   */
+  uint32_t rays;
+  /**
+   * Threads, which end with the call. 0 and 1 are the caller's alone. The bits do not depend on it.
+   */
+  uint32_t threads;
+  /**
+   * Longest ray in metres; 0 is without end.
+   */
+  float reach;
+  /**
+   * Decorrelates two bakes of one mesh.
+   */
+  uint32_t seed;
+  /**
+   * More triangles that block light.
+   */
+  const struct AirglowOccluder *occluders;
+  /**
+   * How many.
+   */
+  size_t occluder_count;
+  /**
+   * Where static visibility vectors are written, as many values as transfer, for incident radiance; or null.
+   */
+  float *visibility;
+  /**
+   * An `AirglowBelowHorizon`, for visibility.
+   */
+  uint32_t below_horizon;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * Told how many vertices are done, about every thirtieth of a second, by one thread at a time; not 0 stops the
+   * bake. May be null.
+   */
+  uint32_t (*progress)(void *user, size_t done, size_t count);
+  /**
+   * Handed to `progress`.
+   */
+  void *user;
+} AirglowBakeInfo;
+
+/**
+ * What a bake did.
+ */
+typedef struct AirglowBakeStats {
+  /**
+   * Rays traced.
+   */
+  uint64_t rays;
+  /**
+   * Rays that met an occluder.
+   */
+  uint64_t blocked;
+  /**
+   * Vertices whose normal is zero.
+   */
+  uint64_t zero_normals;
+  /**
+   * Wall-clock time in seconds.
+   */
+  double seconds;
+} AirglowBakeStats;
+
+/**
+ * What went wrong, written by a call into memory of the caller. May be null wherever it is asked for. A call that
+ * succeeds sets `status` and clears the message.
+ */
+typedef struct AirglowError {
+  /**
+   * `sizeof(AirglowError)`.
+   */
+  uint32_t struct_size;
+  /**
+   * The status that the call returned.
+   */
+  AirglowStatus status;
+  /**
+   * The `VkResult` that a Vulkan call returned, or 0.
+   */
+  int32_t vulkan_result;
+  /**
+   * Bytes of the whole message without its nul; more than fits when it was cut.
+   */
+  uint32_t message_length;
+  /**
+   * What is wrong and how to mend it: UTF-8, ends in a nul, cut at the end of a character.
+   */
+  char message[AIRGLOW_MESSAGE_SIZE];
+} AirglowError;
+
+/**
+ * A Vulkan function of whatever type; cast `vkGetInstanceProcAddr` to it.
+ */
+typedef void (*AirglowFunction)(void);
+
+/**
+ * Device memory that the library asks the host for.
+ */
+typedef struct AirglowMemoryRequest {
+  /**
+   * Name of the resource, valid during the call.
+   */
+  const char *name;
+  /**
+   * Bytes.
+   */
+  uint64_t size;
+  /**
+   * Alignment of the offset in bytes.
+   */
+  uint64_t alignment;
+  /**
+   * Memory types allowed, as `VkMemoryRequirements::memoryTypeBits`.
+   */
+  uint32_t memory_type_bits;
+  /**
+   * An `AirglowLocation`.
+   */
+  uint32_t location;
+  /**
+   * 1 for a buffer, 0 for an image with optimal tiling.
+   */
+  uint32_t linear;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowMemoryRequest;
+
+/**
+ * A piece of device memory that the host gives.
+ */
+typedef struct AirglowAllocation {
+  /**
+   * The `VkDeviceMemory`.
+   */
+  uint64_t memory;
+  /**
+   * Where the piece starts, in bytes.
+   */
+  uint64_t offset;
+  /**
+   * Its bytes, at least what was asked for.
+   */
+  uint64_t size;
+  /**
+   * Where its first byte is mapped; null for memory of the device only.
+   */
+  void *mapped;
+  /**
+   * The host's own number for it, handed back when it is freed.
+   */
+  uint64_t token;
+} AirglowAllocation;
+
+/**
+ * The host's memory. Calls come one at a time, on the threads that call the library.
+ */
+typedef struct AirglowAllocator {
+  /**
+   * `sizeof(AirglowAllocator)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+  /**
+   * Handed to both functions.
+   */
+  void *user;
+  /**
+   * Fills the allocation and returns 0, or returns a `VkResult` below 0. The memory is the context's device's, meets
+   * the request, overlaps no other live piece, and stays until it is freed.
+   */
+  int32_t (*allocate)(void *user, const struct AirglowMemoryRequest *request, struct AirglowAllocation *allocation);
+  /**
+   * Takes back what `allocate` gave.
+   */
+  void (*free)(void *user, const struct AirglowAllocation *allocation);
+} AirglowAllocator;
+
+/**
+ * A text of the library in memory of the caller. With `data` null and `capacity` 0, a call only says the length.
+ */
+typedef struct AirglowText {
+  /**
+   * Where the text is written: UTF-8, with a nul at its end.
+   */
+  char *data;
+  /**
+   * Bytes there.
+   */
+  size_t capacity;
+  /**
+   * Set by the call: bytes of the whole text without its nul.
+   */
+  size_t length;
+} AirglowText;
+
+/**
+ * A device as its host states it. Handles are Vulkan's own as integers, 0 for null.
+ */
+typedef struct AirglowAdoptInfo {
+  /**
+   * `sizeof(AirglowAdoptInfo)`.
+   */
+  uint32_t struct_size;
+  /**
+   * API version the instance was made for, as `VK_MAKE_API_VERSION` packs it.
+   */
+  uint32_t api_version;
+  /**
+   * What the passes in use ask for; null for the library alone. Read during the call.
+   */
+  const struct AirglowRequirements *requirements;
+  /**
+   * `vkGetInstanceProcAddr`, the loader's or the host's own in front of it.
+   */
+  AirglowFunction get_instance_proc_addr;
+  /**
+   * `vkGetDeviceProcAddr`; null asks the instance for it.
+   */
+  AirglowFunction get_device_proc_addr;
+  /**
+   * The `VkInstance`.
+   */
+  uint64_t instance;
+  /**
+   * The `VkPhysicalDevice`.
+   */
+  uint64_t physical_device;
+  /**
+   * The `VkDevice`.
+   */
+  uint64_t device;
+  /**
+   * Family of the queue that commands will be submitted to.
+   */
+  uint32_t queue_family;
+  /**
+   * How many frames may be on the device or being recorded at once, at least 1.
+   */
+  uint32_t frames_in_flight;
+  /**
+   * The `VkDeviceCreateInfo` that the device was made with, or null: extensions and features are read from it, its
+   * `pEnabledFeatures` and its `pNext` chain, during the call. What is named below is added.
+   */
+  const void *device_create_info;
+  /**
+   * Names of extensions that the host enabled, of instance and device. `VK_EXT_debug_utils` among them turns on names
+   * and labels.
+   */
+  const char *const *extension_names;
+  /**
+   * How many.
+   */
+  size_t extension_count;
+  /**
+   * Names of features that the host enabled, as their fields are called in the Vulkan specification.
+   */
+  const char *const *feature_names;
+  /**
+   * How many.
+   */
+  size_t feature_count;
+  /**
+   * The host's memory, or null for blocks of the library's own. Copied; what it points at lives as long as the
+   * context and all that was made from it.
+   */
+  const struct AirglowAllocator *allocator;
+  /**
+   * The host's `VkPipelineCache`, or 0.
+   */
+  uint64_t pipeline_cache;
+  /**
+   * Most bytes of device memory that all made from the context may hold; 0 for no bound.
+   */
+  uint64_t memory_budget;
+  /**
+   * 1: each step writes its number where `airglow_context_last_pass_reached` finds it after a loss. It keeps passes
+   * from overlapping: for hunting a loss, not for shipping.
+   */
+  uint32_t breadcrumbs;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * Where a JSON array of what the device lacks is written, one text each, when adopting fails for that; or null.
+   */
+  struct AirglowText *missing;
+} AirglowAdoptInfo;
+
+/**
+ * How far a device came.
+ */
+typedef struct AirglowPassReached {
+  /**
+   * 1 if a step was begun; 0 without breadcrumbs, or when no step of the frames in flight was begun.
+   */
+  uint32_t reached;
+  /**
+   * 1 if the step was done, too.
+   */
+  uint32_t finished;
+  /**
+   * The frame of the step.
+   */
+  uint64_t frame;
+} AirglowPassReached;
+
+/**
+ * What the pass is prepared for. Zero is the default of every field.
+ */
+typedef struct AirglowRelightSettings {
+  /**
+   * `sizeof(AirglowRelightSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Bands of every vector, 1 to 6; order^2 coefficients. 0 is 4.
+   */
+  uint32_t order;
+  /**
+   * An `AirglowStorage`.
+   */
+  uint32_t storage;
+  /**
+   * An `AirglowOutput`.
+   */
+  uint32_t output;
+  /**
+   * An `AirglowMethod`.
+   */
+  uint32_t method;
+  /**
+   * An `AirglowLightKind`.
+   */
+  uint32_t light;
+  /**
+   * 1: instances may bring a dynamic visibility vector for each vertex.
+   */
+  uint32_t visibility;
+  /**
+   * 1: instances of meshes without vectors may bring the normals of their vertices, for colours.
+   */
+  uint32_t normals;
+} AirglowRelightSettings;
+
+/**
+ * One use of one resource by one step. Elements of arrays never grow; names live as long as the prepared frame.
+ */
+typedef struct AirglowAccess {
+  /**
+   * An `AirglowResource`.
+   */
+  uint32_t resource;
+  /**
+   * See `AirglowResource`.
+   */
+  uint32_t index;
+  /**
+   * An `AirglowOrigin`.
+   */
+  uint32_t origin;
+  /**
+   * The step, counted from 0 in the order of recording.
+   */
+  uint32_t step;
+  /**
+   * `VkPipelineStageFlags2`.
+   */
+  uint64_t stage;
+  /**
+   * `VkAccessFlags2`.
+   */
+  uint64_t access;
+  /**
+   * `VkImageLayout`; 0 for buffers.
+   */
+  uint32_t layout;
+  /**
+   * 1: the step writes it.
+   */
+  uint32_t writes;
+  /**
+   * Name of the resource.
+   */
+  const char *name;
+  /**
+   * Name of the step.
+   */
+  const char *step_name;
+} AirglowAccess;
+
+/**
+ * One resource of a frame. Elements of arrays never grow; names live as long as the prepared frame.
+ */
+typedef struct AirglowResourceInfo {
+  /**
+   * An `AirglowResource`.
+   */
+  uint32_t resource;
+  /**
+   * See `AirglowResource`.
+   */
+  uint32_t index;
+  /**
+   * An `AirglowOrigin`.
+   */
+  uint32_t origin;
+  /**
+   * `VkFormat` of a scratch image; 0 otherwise.
+   */
+  uint32_t format;
+  /**
+   * Bytes of a buffer, or of the texels of a scratch image; 0 for an image of the host's. A device may pad it.
+   */
+  uint64_t bytes;
+  /**
+   * Width and height of a scratch image; 0 otherwise.
+   */
+  uint32_t extent[2];
+  /**
+   * `VkBufferUsageFlags` or `VkImageUsageFlags` that the frame needs.
+   */
+  uint32_t usage;
+  /**
+   * 1: an image.
+   */
+  uint32_t is_image;
+  /**
+   * Its name.
+   */
+  const char *name;
+} AirglowResourceInfo;
+
+/**
+ * Where the results of an instance lie in the buffer of results. Elements of arrays never grow.
+ */
+typedef struct AirglowResultRange {
+  /**
+   * First byte: the offset of the instance's vertex buffer.
+   */
+  uint64_t offset;
+  /**
+   * Bytes.
+   */
+  uint64_t size;
+  /**
+   * Vertices.
+   */
+  uint32_t vertex_count;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowResultRange;
+
+/**
+ * One appearance of a mesh. Elements of arrays never grow.
+ */
+typedef struct AirglowRelightInstance {
+  /**
+   * The number that `airglow_relight_add_mesh` gave.
+   */
+  uint64_t mesh;
+  /**
+   * From object space to the world, a quaternion x, y, z, w of any length; all zero is the identity.
+   */
+  double rotation[4];
+  /**
+   * 1: the instance is mirrored; an inversion `d -> -d` follows the rotation.
+   */
+  uint32_t inverted;
+  /**
+   * A sum of `AIRGLOW_INPUT_...`.
+   */
+  uint32_t inputs;
+} AirglowRelightInstance;
+
+/**
+ * A frame: light, and what it falls on. The results of its instances lie one after another in a buffer of the host's.
+ */
+typedef struct AirglowRelightFrame {
+  /**
+   * `sizeof(AirglowRelightFrame)`.
+   */
+  uint32_t struct_size;
+  /**
+   * An `AirglowLight`.
+   */
+  uint32_t light;
+  /**
+   * Turns the light in the world, a quaternion x, y, z, w of any length; all zero is the identity.
+   */
+  double light_rotation[4];
+  /**
+   * The instances.
+   */
+  const struct AirglowRelightInstance *instances;
+  /**
+   * How many.
+   */
+  size_t instance_count;
+  /**
+   * Of an environment in an image of the host's: texels of a row.
+   */
+  uint32_t environment_width;
+  /**
+   * Of an environment in an image of the host's: rows.
+   */
+  uint32_t environment_height;
+  /**
+   * Of an environment in an image of the host's: a number that changes with its contents, below 2^63; it is projected
+   * only when the number changes.
+   */
+  uint64_t environment_revision;
+} AirglowRelightFrame;
+
+/**
+ * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
+ */
+typedef struct AirglowBinding {
+  /**
+   * An `AirglowResource`.
+   */
+  uint32_t resource;
+  /**
+   * See `AirglowResource`.
+   */
+  uint32_t index;
+  /**
+   * The `VkBuffer`, or 0 for an image.
+   */
+  uint64_t buffer;
+  /**
+   * First byte of the resource in the buffer.
+   */
+  uint64_t offset;
+  /**
+   * Bytes of the whole buffer.
+   */
+  uint64_t size;
+  /**
+   * The `VkImage`, 2D with one sample, or 0 for a buffer.
+   */
+  uint64_t image;
+  /**
+   * `VkFormat` of the image.
+   */
+  uint32_t format;
+  /**
+   * `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
+   */
+  uint32_t usage;
+  /**
+   * Width and height of the image.
+   */
+  uint32_t extent[2];
+  /**
+   * Mips of the image; 0 is 1.
+   */
+  uint32_t mips;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+} AirglowBinding;
+
+/**
+ * Bytes that the settings take, before anything is made; a prepared frame says its own
+ * (`airglow_prepared_resources`).
+ */
+typedef struct AirglowRelightBytes {
+  /**
+   * Of the vectors of a mesh with that many vertices; twice until its first frame is recorded.
+   */
+  uint64_t vectors;
+  /**
+   * Of the results of an instance of it.
+   */
+  uint64_t results;
+  /**
+   * `VkBufferUsageFlags` that the host's buffer of results needs for the pass, beside its own.
+   */
+  uint32_t results_usage;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowRelightBytes;
+
+/**
+ * One thing asked of a device. Texts live until the requirements change or are dropped.
+ */
+typedef struct AirglowNeed {
+  /**
+   * An `AirglowNeedKind`.
+   */
+  uint32_t kind;
+  /**
+   * 1: without it nothing runs. 0: it only buys something.
+   */
+  uint32_t required;
+  /**
+   * See `AirglowNeedKind`.
+   */
+  uint64_t value;
+  /**
+   * See `AirglowNeedKind`.
+   */
+  uint64_t flags;
+  /**
+   * The name of extension, feature or limit; empty for others.
+   */
+  const char *name;
+  /**
+   * What it is for or what it buys.
+   */
+  const char *why;
+} AirglowNeed;
+
+/**
+ * A physical device, to be asked what it supports before there is a device.
+ */
+typedef struct AirglowPhysicalDevice {
+  /**
+   * `sizeof(AirglowPhysicalDevice)`.
+   */
+  uint32_t struct_size;
+  /**
+   * The queue family that commands will be submitted to.
+   */
+  uint32_t queue_family;
+  /**
+   * `vkGetInstanceProcAddr`, the loader's or the host's own in front of it.
+   */
+  AirglowFunction get_instance_proc_addr;
+  /**
+   * The `VkInstance`.
+   */
+  uint64_t instance;
+  /**
+   * The `VkPhysicalDevice`; Vulkan 1.3 or newer.
+   */
+  uint64_t physical_device;
+} AirglowPhysicalDevice;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The version of the library: major in the highest 10 bits, minor in the next 10, patch in the lowest 12.
+ */
+uint32_t airglow_version(void);
+
+/**
+ * Bakes transfer vectors: `order^2` values a vertex, vertex-major, to be given to `airglow_relight_add_mesh`. They
+ * carry 1/pi and no albedo. The same input gives the same bits on any number of threads. `stats` may be null.
+ *
+ * The caller promises:
+ * All arrays of `info` have as many elements as it says; `transfer` has room for `transfer_count` values, which must be
+ * `vertex_count * order^2`.
+ */
+AirglowStatus airglow_bake(const struct AirglowBakeInfo *info,
+                           float *transfer,
+                           size_t transfer_count,
+                           struct AirglowBakeStats *stats,
+                           struct AirglowError *error);
+
+/**
+ * Adopts the host's device. Nothing is submitted, waited for or started, now or later.
+ *
+ * The caller promises:
+ * The handles are alive and belong together, and `info` states truly what was enabled on them. Instance and device
+ * outlive the context and all that was made from it; before the last of those is dropped, the device has finished all
+ * work recorded through it. The pipeline cache is not used by another thread while pipelines are made.
+ */
+AirglowStatus airglow_context_adopt(const struct AirglowAdoptInfo *info,
+                                    struct AirglowContext **context,
+                                    struct AirglowError *error);
+
+/**
+ * Starts frame `frame`: memory of the frame `frames_in_flight` earlier is used again, and what was dropped that long
+ * ago is destroyed. Frame 0 has begun when the context is made; frames count up.
+ *
+ * The caller promises:
+ * The device has finished everything recorded in frames up to `frame - frames_in_flight`, and those command buffers
+ * will not be submitted again.
+ */
+AirglowStatus airglow_context_begin_frame(const struct AirglowContext *context,
+                                          uint64_t frame,
+                                          struct AirglowError *error);
+
+/**
+ * What the device memory is held for, as JSON: `[{"owner": "relight", "bytes": 1024, "objects": 2}]`, sorted by owner.
+ *
+ * The caller promises:
+ * `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_context_memory_json(const struct AirglowContext *context,
+                                          struct AirglowText *text,
+                                          struct AirglowError *error);
+
+/**
+ * The last step that the device began, by the breadcrumbs it wrote, for after a loss; `name` gets the step's name.
+ *
+ * The caller promises:
+ * `reached` may be written; `name` as `AirglowText` says.
+ */
+AirglowStatus airglow_context_last_pass_reached(const struct AirglowContext *context,
+                                                struct AirglowPassReached *reached,
+                                                struct AirglowText *name,
+                                                struct AirglowError *error);
+
+/**
+ * Drops the context. What was made from it may be dropped before or after. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again. When the context and all that was made from it are dropped, the device exists and has
+ * finished all work recorded through them.
+ */
+void airglow_context_drop(struct AirglowContext *context);
+
+/**
+ * Adds what the pass asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_relight_require(struct AirglowRequirements *requirements,
+                                      const struct AirglowRelightSettings *settings,
+                                      struct AirglowError *error);
+
+/**
+ * Makes the pass: its kernels and tables.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `relight` may be written.
+ */
+AirglowStatus airglow_relight_new(const struct AirglowContext *context,
+                                  const struct AirglowRelightSettings *settings,
+                                  struct AirglowRelight **relight,
+                                  struct AirglowError *error);
+
+/**
+ * Drops the pass; frames that were prepared stay usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_relight_drop(struct AirglowRelight *relight);
+
+/**
+ * Adds a mesh of `vertex_count` vertices, in the host's order. `vectors` are vertex-major, `order^2` values a vertex:
+ * transfer vectors (`airglow_bake`) for colours, static visibility vectors for incident radiance; null for a mesh that
+ * nothing static shadows, whose instances bring their normals. `*mesh` gets its number, never 0. They are copied, and
+ * go to the device with the next frame that uses the mesh.
+ *
+ * The caller promises:
+ * `vectors` is null or has `vector_count` values; `name` is null or ends in a nul; `mesh` may be written.
+ */
+AirglowStatus airglow_relight_add_mesh(const struct AirglowRelight *relight,
+                                       const char *name,
+                                       uint32_t vertex_count,
+                                       const float *vectors,
+                                       size_t vector_count,
+                                       uint64_t *mesh,
+                                       struct AirglowError *error);
+
+/**
+ * Drops a mesh; its memory goes back when no frame in flight, and no prepared frame, can use it.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_relight_drop_mesh(const struct AirglowRelight *relight,
+                                        uint64_t mesh,
+                                        struct AirglowError *error);
+
+/**
+ * Gives the environment of frames whose light is `AIRGLOW_LIGHT_ENVIRONMENT`: `width * height` texels of three floats,
+ * equirectangular, linear Rec. 709 radiance in W/sr/m2, the first row up, the centre looking down -Z and u growing to
+ * +X. They are checked, copied, and uploaded by the next frame that is recorded with them. Frames prepared before keep
+ * the environment they were prepared with.
+ *
+ * The caller promises:
+ * `texels` has `3 * width * height` values.
+ */
+AirglowStatus airglow_relight_set_environment(const struct AirglowRelight *relight,
+                                              uint32_t width,
+                                              uint32_t height,
+                                              const float *texels,
+                                              struct AirglowError *error);
+
+/**
+ * Lists every use of every resource, step by step. Before recording, the host makes its own resources, and the scratch,
+ * available to the first use listed of each, in that layout; afterwards it waits for the last. Between the steps the
+ * library stands its own barriers; the packed rectangle's layouts are all its own. `*count` holds the size of
+ * `accesses` before and the number of uses after; with `accesses` null only the number is written.
+ *
+ * The caller promises:
+ * `accesses` is null or has room for `*count` elements.
+ */
+AirglowStatus airglow_prepared_accesses(const struct AirglowPrepared *prepared,
+                                        struct AirglowAccess *accesses,
+                                        size_t *count,
+                                        struct AirglowError *error);
+
+/**
+ * Lists every resource that the frame uses, with its bytes, before anything is made. `*count` as with
+ * `airglow_prepared_accesses`.
+ *
+ * The caller promises:
+ * `resources` is null or has room for `*count` elements.
+ */
+AirglowStatus airglow_prepared_resources(const struct AirglowPrepared *prepared,
+                                         struct AirglowResourceInfo *resources,
+                                         size_t *count,
+                                         struct AirglowError *error);
+
+/**
+ * Lists where the results of each instance lie, in the order of the frame; none when the pass was left out. `*count` as
+ * with `airglow_prepared_accesses`.
+ *
+ * The caller promises:
+ * `ranges` is null or has room for `*count` elements.
+ */
+AirglowStatus airglow_prepared_ranges(const struct AirglowPrepared *prepared,
+                                      struct AirglowResultRange *ranges,
+                                      size_t *count,
+                                      struct AirglowError *error);
+
+/**
+ * Writes the plan that the library's graph makes of a frame: steps, barriers, lifetimes and bytes of what they use, and
+ * what was left out, why, and what would bring it back. The host's resources stand in it with the sizes needed, handed
+ * over as their first use wants them, the results going on to vertex input or to vertex shaders. The format is an
+ * `AirglowPlanFormat`.
+ *
+ * The caller promises:
+ * `frame` as with `airglow_relight_prepare`; `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_relight_plan(const struct AirglowRelight *relight,
+                                   const struct AirglowRelightFrame *frame,
+                                   uint32_t format,
+                                   struct AirglowText *text,
+                                   struct AirglowError *error);
+
+/**
+ * Prepares a frame. Memory for the device is made for tables of a new size of environment alone; what the frame itself
+ * needs is listed by `airglow_prepared_resources` and made by the host or by `airglow_prepared_make_scratch`.
+ *
+ * The caller promises:
+ * `frame` points at as many bytes as it says, its instances are as many as it says; `prepared` may be written.
+ */
+AirglowStatus airglow_relight_prepare(const struct AirglowRelight *relight,
+                                      const struct AirglowRelightFrame *frame,
+                                      struct AirglowPrepared **prepared,
+                                      struct AirglowError *error);
+
+/**
+ * Makes the scratch of a frame, charged to the pass in the context's memory, for hosts that would not place it
+ * themselves. Calling it again is nothing.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_prepared_make_scratch(struct AirglowPrepared *prepared, struct AirglowError *error);
+
+/**
+ * Turns the light and the instances of a prepared frame, in the frame's order; it counts from the next recording on. Of
+ * the instances only `rotation` and `inverted` are read.
+ *
+ * The caller promises:
+ * `light_rotation` has four values; `instances` has `instance_count` elements.
+ */
+AirglowStatus airglow_prepared_turn(const struct AirglowPrepared *prepared,
+                                    const double *light_rotation,
+                                    const struct AirglowRelightInstance *instances,
+                                    size_t instance_count,
+                                    struct AirglowError *error);
+
+/**
+ * Drops a prepared frame. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_prepared_drop(struct AirglowPrepared *prepared);
+
+/**
+ * Records a frame into a command buffer of the host's: its steps, with barriers between them and none around them
+ * (`airglow_prepared_accesses`). Bound are the host's resources, and the scratch unless
+ * `airglow_prepared_make_scratch` made it. State of the command buffer that is changed: pipelines, descriptor set 0 and
+ * push constants of both bind points, viewport 0, scissor 0. Rendering and labels are closed again.
+ *
+ * The caller promises:
+ * `command_buffer` is a primary `VkCommandBuffer` of a pool of the adopted queue family, recording, outside rendering,
+ * used by no one else meanwhile; it is submitted at most once, in the context's frame. Bindings describe live resources
+ * of the device truly, which stay until the frame is done; host and scratch resources are in the states listed.
+ */
+AirglowStatus airglow_prepared_record(const struct AirglowPrepared *prepared,
+                                      uint64_t command_buffer,
+                                      const struct AirglowBinding *bindings,
+                                      size_t binding_count,
+                                      struct AirglowError *error);
+
+/**
+ * Says the bytes of a mesh of `vertex_count` vertices and of its results.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `bytes` may be written.
+ */
+AirglowStatus airglow_relight_bytes(const struct AirglowRelightSettings *settings,
+                                    uint32_t vertex_count,
+                                    struct AirglowRelightBytes *bytes,
+                                    struct AirglowError *error);
+
+/**
+ * Makes requirements: what the library itself needs. Drop them with `airglow_requirements_drop`.
+ *
+ * The caller promises:
+ * `requirements` may be written; `error` as everywhere.
+ */
+AirglowStatus airglow_requirements_new(struct AirglowRequirements **requirements, struct AirglowError *error);
+
+/**
+ * Drops requirements, and with them the texts of `airglow_requirements_list` and the structures that
+ * `airglow_requirements_patch` put into a chain. Null is nothing.
+ *
+ * The caller promises:
+ * `requirements` is not used again.
+ */
+void airglow_requirements_drop(struct AirglowRequirements *requirements);
+
+/**
+ * Lists everything asked for. `*count` holds the size of `needs` before and the number of needs after; with `needs`
+ * null only the number is written.
+ *
+ * The caller promises:
+ * `needs` is null or has room for `*count` needs.
+ */
+AirglowStatus airglow_requirements_list(struct AirglowRequirements *requirements,
+                                        struct AirglowNeed *needs,
+                                        size_t *count,
+                                        struct AirglowError *error);
+
+/**
+ * Everything asked for, as JSON: what `airglow requirements` prints.
+ *
+ * The caller promises:
+ * `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_requirements_json(const struct AirglowRequirements *requirements,
+                                        struct AirglowText *text,
+                                        struct AirglowError *error);
+
+/**
+ * Compares the requirements with what a physical device supports. Returns `AIRGLOW_STATUS_MISSING` where it does not
+ * suffice; `missing`, which may be null, then gets a JSON array of texts, one for each thing that is lacking.
+ *
+ * The caller promises:
+ * The handles of `device` are alive and belong together; `missing` as `AirglowText` says.
+ */
+AirglowStatus airglow_requirements_check(const struct AirglowRequirements *requirements,
+                                         const struct AirglowPhysicalDevice *device,
+                                         struct AirglowText *missing,
+                                         struct AirglowError *error);
+
+/**
+ * Switches the features asked for on in the `pNext` chain of a `VkDeviceCreateInfo`, before the device is made: those
+ * required, and the optional ones that `device` supports (none, where `device` is null). Structures in the chain are
+ * set and never duplicated, unknown ones stay, missing ones are appended. Features of Vulkan 1.0 go to
+ * `enabled_features`, the `VkPhysicalDeviceFeatures` behind `pEnabledFeatures`, where it is given and the chain has no
+ * `VkPhysicalDeviceFeatures2`. What was appended lives in the requirements: use the chain before they are dropped or
+ * patch another.
+ *
+ * The caller promises:
+ * `p_next` points at null or at a valid chain that may be written, `enabled_features` at null or a
+ * `VkPhysicalDeviceFeatures`; the handles of `device` are alive and belong together.
+ */
+AirglowStatus airglow_requirements_patch(struct AirglowRequirements *requirements,
+                                         const struct AirglowPhysicalDevice *device,
+                                         uint32_t api_version,
+                                         void **p_next,
+                                         void *enabled_features,
+                                         struct AirglowError *error);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* AIRGLOW_H */

@@ -1,0 +1,25 @@
+//! airglow for hosts in C and C++: opaque handles, size-versioned structures, one generated header.
+//!
+//! `include/airglow.h` is made from this source by `cargo run -p xtask -- header`; its comments are the documentation.
+//! Every exported function checks what it is given as far as a pointer can be checked, catches panics, and says what
+//! went wrong in the caller's [`AirglowError`](status::AirglowError).
+#![deny(clippy::missing_safety_doc, clippy::undocumented_unsafe_blocks)]
+
+pub mod allocator;
+pub mod bake;
+pub mod context;
+mod input;
+#[cfg(feature = "relight")]
+pub mod relight;
+pub mod requirements;
+pub mod status;
+pub mod text;
+
+/// The version of the library: major in the highest 10 bits, minor in the next 10, patch in the lowest 12.
+#[unsafe(no_mangle)]
+pub extern "C" fn airglow_version() -> u32 {
+    let number = |text: &str| text.parse::<u32>().unwrap_or_default();
+    number(env!("CARGO_PKG_VERSION_MAJOR")) << 22
+        | number(env!("CARGO_PKG_VERSION_MINOR")) << 12
+        | number(env!("CARGO_PKG_VERSION_PATCH"))
+}
