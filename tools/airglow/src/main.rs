@@ -1,8 +1,8 @@
 //! The airglow command: the first host of the library, and the instruments that measure it.
 //!
 //! Each command has one file under `commands`; what they share lies beside: `host` opens a device and
-//! draws frames as an engine would, `report` holds measurements and plots, `compare` holds image errors,
-//! `eval` runs a pass's own code on rows of parameters.
+//! draws frames as an engine would, `measure` says what their passes do and take, `report` holds measurements
+//! and plots, `compare` holds image errors, `eval` runs a pass's own code on rows of parameters.
 #![cfg_attr(
     not(feature = "relight"),
     allow(dead_code, unused_variables, reason = "without a pass, what draws and measures has nothing to do")
@@ -15,6 +15,8 @@ mod eval;
 mod failure;
 mod files;
 mod host;
+#[cfg(feature = "relight")]
+mod measure;
 mod output;
 mod report;
 #[cfg(feature = "relight")]

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use airglow_gpu::{PassTime, TimingSummary};
 use airglow_scene::Scene;
 use airglow_scene::image_io::{write_exr, write_png_bytes};
 use clap::{Args, ValueEnum};
@@ -17,6 +16,9 @@ use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Picture, Renderer, Settings, WARM_UP};
 use crate::host::{device, truth};
+use crate::measure::pass::{PassStat, counted};
+use crate::measure::profiler::ProfilerCost;
+use crate::measure::trace::{self, Trace};
 use crate::output::Output;
 use crate::report::model::Machine;
 
@@ -28,6 +30,7 @@ use crate::report::model::Machine;
 #[command(after_help = "Examples:
   airglow render assets/scenes/spot.toml -o spot.png
   airglow render assets/scenes/spot.toml -o spot.exr --size 1920x1080 --stat spot.json --frames 200
+  airglow render assets/scenes/spot.toml -o spot.png --frames 60 --trace spot.trace.json
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
   airglow render assets/scenes/demo.toml -o both.png --without relight --split
   airglow render assets/scenes/demo.toml -o pair.png --views 2
@@ -77,9 +80,15 @@ pub struct Arguments {
     /// Rays for each vertex of the reference.
     #[arg(long, default_value_t = 1024, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(2..))]
     reference_rays: u32,
-    /// Write device, times and memory of the passes here, as JSON.
+    /// Write device, times, counts and memory of the passes here, as JSON, and what measuring them costs.
     #[arg(long, value_name = "FILE.json")]
     stat: Option<PathBuf>,
+    /// Have the device count what each pass makes it do, too: vertices, primitives, invocations of shaders.
+    #[arg(long)]
+    pipeline_statistics: bool,
+    /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
+    #[arg(long, value_name = "FILE.json")]
+    trace: Option<PathBuf>,
 }
 
 /// Passes that a host can leave out.
@@ -102,20 +111,14 @@ struct Stat {
     span_ms: Option<f64>,
     /// All passes added up, milliseconds.
     sum_ms: Option<f64>,
+    /// Median of the sum over the span of its frame.
+    coverage: Option<f64>,
     /// Median CPU time of recording a frame, milliseconds.
     record_ms: f64,
+    /// What measuring adds to a frame; with --stat alone.
+    profiler: Option<ProfilerCost>,
     /// Device memory by owner.
     memory: Vec<MemoryStat>,
-}
-
-/// Device time of a pass.
-#[derive(Serialize)]
-pub struct PassStat {
-    name: String,
-    median_ms: f64,
-    /// 5th and 95th percentile of the frames.
-    p5_ms: f64,
-    p95_ms: f64,
 }
 
 #[derive(Serialize)]
@@ -139,11 +142,21 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let mut settings = settings(arguments);
         let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
-        let mut picture = renderer.draw(&settings, arguments.frames as usize)?;
+        let statistics = arguments.pipeline_statistics;
+        let mut picture = renderer.draw_counted(&settings, arguments.frames as usize, statistics)?;
         if arguments.split {
             picture.replace_left_half(&renderer.draw(&Settings { without_relight: true, ..settings }, 1)?);
         }
-        let stat = stat(device, &settings, &picture);
+        let cost = match (&arguments.stat, &picture.timing) {
+            (Some(_), Some(timing)) => {
+                ProfilerCost::measure(&mut renderer, &settings, statistics, timing.frames)?
+            }
+            _ => None,
+        };
+        if let Some(path) = &arguments.trace {
+            write_trace(path, device, &picture)?;
+        }
+        let stat = stat(device, &settings, &picture, cost);
         Ok((picture, stat))
     })?;
     for path in &arguments.output {
@@ -189,7 +202,27 @@ fn reference(scene: &Scene, arguments: &Arguments, output: &Output) -> Outcome<V
     truth::of_scene(scene, &samples, arguments.reference_rays, output)
 }
 
-fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> Stat {
+/// The frames that were timed, on one time line.
+fn write_trace(path: &Path, device: &device::Device<'_>, picture: &Picture) -> Outcome {
+    if picture.frames.is_empty() {
+        return Err(Failure::usage(format!("--trace needs timestamps and more than {WARM_UP} --frames")));
+    }
+    let trace = Trace {
+        machine: device.machine(),
+        passes: &picture.passes,
+        frames: &picture.frames,
+        seconds: &trace::seconds(device.context()),
+        calibrations: picture.calibrations,
+    };
+    files::write(path, &serde_json::to_vec(&trace.json()).map_err(Failure::work)?)
+}
+
+fn stat(
+    device: &device::Device<'_>,
+    settings: &Settings,
+    picture: &Picture,
+    profiler: Option<ProfilerCost>,
+) -> Stat {
     let mut cpu = picture.cpu_milliseconds.clone();
     cpu.sort_by(f64::total_cmp);
     let timing = picture.timing.as_ref();
@@ -199,10 +232,12 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
         height: settings.picture_size()[1],
         frames: timing.map_or(0, |timing| timing.frames),
         exposure: settings.exposure,
-        passes: pass_stats(timing),
+        passes: counted(&picture.passes, timing),
         span_ms: timing.map(|timing| 1e3 * timing.span),
         sum_ms: timing.map(|timing| 1e3 * timing.sum),
+        coverage: timing.map(|timing| timing.coverage),
         record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
+        profiler,
         memory: device
             .context()
             .memory_report()
@@ -212,37 +247,20 @@ fn stat(device: &device::Device<'_>, settings: &Settings, picture: &Picture) -> 
     }
 }
 
-/// The passes of some frames; none with too few.
-pub fn pass_stats(timing: Option<&TimingSummary>) -> Vec<PassStat> {
-    let pass = |pass: &PassTime| PassStat {
-        name: pass.name.clone(),
-        median_ms: 1e3 * pass.median,
-        p5_ms: 1e3 * pass.p5,
-        p95_ms: 1e3 * pass.p95,
-    };
-    timing.map_or(Vec::new(), |timing| timing.passes.iter().map(pass).collect())
-}
-
-impl PassStat {
-    /// The pass as a line of text.
-    pub fn line(&self) -> String {
-        let Self { name, median_ms, p5_ms, p95_ms } = self;
-        format!("  {name:32} {median_ms:9.3} ms  ({p5_ms:.3} to {p95_ms:.3})\n")
-    }
-}
-
 fn text(stat: &Stat) -> String {
     let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
     text.extend(stat.passes.iter().map(PassStat::line));
-    match (stat.span_ms, stat.sum_ms) {
-        (Some(span), Some(sum)) => {
+    match (stat.span_ms, stat.sum_ms, stat.coverage) {
+        (Some(span), Some(sum), Some(coverage)) => {
             text.push_str(&format!(
-                "  span {span:.3} ms, sum {sum:.3} ms; medians of {} frames (5th to 95th percentile)\n",
+                "  span {span:.3} ms, sum {sum:.3} ms, coverage {:.1} %; medians of {} frames (5th to 95th percentile)\n",
+                100.0 * coverage,
                 stat.frames
             ));
         }
         _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
     }
+    text.push_str(&stat.profiler.as_ref().map_or(String::new(), ProfilerCost::text));
     for owner in &stat.memory {
         text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));
     }

@@ -81,6 +81,7 @@ fn measure(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<R
             measurement.rays()?,
             measurement.storage()?,
             measurement.method()?,
+            measurement.source()?,
             measurement.shape(Storage::F32)?,
             measurement.shape(Storage::F16)?,
         ];
@@ -129,6 +130,10 @@ fn remarks(effort: &Effort, workload: &Workload) -> Vec<String> {
              rounds of warm-up. Bakes are timed in {} rounds of their own.",
             effort.vertices, effort.rounds.measured, effort.rounds.warm_up, effort.bake_rounds.measured
         ),
-        "Memory is what a setting holds; bytes moved are what one frame reads and writes.".to_owned(),
+        "Memory held: bytes of the vectors and results that a setting keeps on the device. Read + written: bytes that a \
+         frame's kernels over the vertices must move by their algorithm, inputs once, outputs as often as they are \
+         written; what caches save or padding adds is not in it. Bound: bytes of all ranges bound while the frame is \
+         recorded, whether read or not. Invocations, dispatches, draws, copies and barriers are counted while recording."
+            .to_owned(),
     ]
 }

@@ -5,12 +5,13 @@ use glam::{DQuat, Vec3};
 use serde::Serialize;
 
 use crate::cli::Global;
-use crate::commands::render::{PassStat, pass_stats, size};
+use crate::commands::render::size;
 use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::host::device;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Renderer, Settings};
+use crate::measure::pass::{PassStat, timed};
 use crate::output::Output;
 use crate::report::model::Machine;
 use crate::window::controls;
@@ -104,7 +105,7 @@ fn stat(machine: Machine, shown: Shown) -> Stat {
         machine,
         frames,
         frames_per_second: (frames > 1).then(|| f64::from(frames - 1) / seconds),
-        passes: pass_stats(timing.as_ref()),
+        passes: timed(timing.as_ref()),
     }
 }
 

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, Execution, Label, Location, Timing, TimingSummary};
+use airglow_gpu::{
+    Buffer, Calibration, Execution, FrameTimes, Imports, Label, Location, Timing, TimingSummary,
+};
 use airglow_graph::{BufferDesc, ImageDesc, LeftOut, Plan};
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
@@ -19,6 +21,7 @@ use super::unread;
 use super::upload;
 use super::view::{self, ViewConstants};
 use crate::failure::{Failure, Outcome};
+use crate::measure::pass::{self, PassWork};
 
 /// Everything a frame is declared from.
 pub struct Renderer<'d> {
@@ -92,6 +95,24 @@ pub struct Picture {
     pub timing: Option<TimingSummary>,
     /// CPU milliseconds of recording each frame.
     pub cpu_milliseconds: Vec<f64>,
+    /// What each pass does.
+    pub passes: Vec<PassWork>,
+    /// The frames that were timed, oldest first.
+    pub frames: Vec<FrameTimes>,
+    /// The clocks of device and CPU before and after the frames; `None` where the device does not tell.
+    pub calibrations: Option<[Calibration; 2]>,
+}
+
+/// A frame ready to be recorded as often as its topology stays.
+pub struct Compiled {
+    /// The plan and its transients.
+    pub execution: Execution,
+    /// The host's resources.
+    pub imports: Imports,
+    /// The ring of queries; `None` on a queue without timestamps, which draws all the same.
+    pub timing: Option<Timing>,
+    /// What changes from frame to frame while the plan stays.
+    pub turning: Turning,
 }
 
 impl Picture {
@@ -153,6 +174,11 @@ impl<'d> Renderer<'d> {
         Ok(())
     }
 
+    /// The device that draws.
+    pub fn device(&self) -> &'d Device<'d> {
+        self.device
+    }
+
     /// Looks through another camera from the next turn on.
     pub fn look(&mut self, camera: Camera) {
         self.camera = camera;
@@ -211,22 +237,39 @@ impl<'d> Renderer<'d> {
         declared.graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)
     }
 
+    /// A frame compiled, with a ring of queries that keeps `frames` frames; with `statistics` the device counts too.
+    pub fn compile(&mut self, settings: &Settings, frames: usize, statistics: bool) -> Outcome<Compiled> {
+        let Declared { graph, imports, turning } = frame::declare(self, settings)?;
+        let context = self.device.context();
+        let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
+        let timing = Timing::new(context, plan.steps().len() as u32, WARM_UP, frames);
+        let timing = match statistics {
+            true => Some(timing.and_then(Timing::with_pipeline_statistics).map_err(Failure::device)?),
+            false => timing.ok(),
+        };
+        let execution = Execution::prepare(context, plan).map_err(Failure::work)?;
+        Ok(Compiled { execution, imports, timing, turning })
+    }
+
     /// Draws `frames` frames and reads the last one back.
     pub fn draw(&mut self, settings: &Settings, frames: usize) -> Outcome<Picture> {
-        let Declared { graph, imports, turning } = frame::declare(self, settings)?;
-        let plan = graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)?;
+        self.draw_counted(settings, frames, false)
+    }
+
+    /// The same, with pipeline statistics if asked for.
+    pub fn draw_counted(&mut self, settings: &Settings, frames: usize, statistics: bool) -> Outcome<Picture> {
+        let Compiled { mut execution, imports, mut timing, turning } =
+            self.compile(settings, frames, statistics)?;
         let context = self.device.context();
-        let passes = plan.steps().len() as u32;
-        let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
-        // A queue without timestamps draws all the same.
-        let mut timing = Timing::new(context, passes, WARM_UP, frames).ok();
         let turn_light = |frame: usize| {
             // One plan for all frames: only the rotation of the light and of the views' sky changes.
             let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;
             self.turn(&turning, settings, turn)
         };
+        let before = context.calibrate().map_err(Failure::work)?;
         let cpu_milliseconds =
             self.device.frames(&mut execution, &imports, timing.as_mut(), frames, turn_light)?;
+        let after = context.calibrate().map_err(Failure::work)?;
         let size = settings.picture_size();
         let pixels = size[0] as usize * size[1] as usize;
         let linear: Vec<f32> = self.linear.read(0, 3 * pixels).map_err(Failure::work)?;
@@ -234,8 +277,11 @@ impl<'d> Renderer<'d> {
         Ok(Picture {
             linear: view::picture(size, &linear),
             display: display.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
-            timing: timing.and_then(|timing| timing.summary()),
+            timing: timing.as_ref().and_then(Timing::summary),
             cpu_milliseconds,
+            passes: pass::work(&execution),
+            frames: timing.iter().flat_map(Timing::frames).cloned().collect(),
+            calibrations: before.zip(after).map(|(before, after)| [before, after]),
         })
     }
 }

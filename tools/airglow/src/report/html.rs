@@ -95,8 +95,9 @@ fn section(html: &mut String, measured: &[(&Report, &Curve)]) -> Outcome {
 
 fn points(html: &mut String, curve: &Curve) {
     html.push_str(
-        "<table><tr><th>setting</th><th>median ms</th><th>p5</th><th>p95</th><th>n</th><th>memory</th>\
-         <th>bytes moved</th><th>invocations</th><th>dispatches</th><th>draws</th>\
+        "<table><tr><th>setting</th><th>median ms</th><th>p5</th><th>p95</th><th>n</th><th>memory held</th>\
+         <th>read + written</th><th>bound</th><th>invocations</th><th>dispatches</th><th>draws</th><th>copies</th>\
+         <th>barriers</th>\
          <th>arithmetic error</th><th>setting error</th><th>model error</th></tr>",
     );
     for point in &curve.points {
@@ -117,6 +118,7 @@ fn cells(point: &Point) -> Vec<String> {
     let time = point.time();
     let milliseconds = |value: Option<f64>| value.map_or("—".to_owned(), |value| format!("{value:.4}"));
     let error = |value: Option<f64>| value.map_or("—".to_owned(), |value| format!("{value:.2e}"));
+    let count = |value: Option<u64>| value.map_or("—".to_owned(), |value| value.to_string());
     vec![
         milliseconds(time.map(|t| t.median)),
         milliseconds(time.map(|t| t.p5)),
@@ -124,9 +126,12 @@ fn cells(point: &Point) -> Vec<String> {
         point.milliseconds.len().to_string(),
         bytes(point.memory),
         bytes(point.counts.bytes),
+        point.counts.bound.map_or("—".to_owned(), bytes),
         point.counts.invocations.to_string(),
         point.counts.dispatches.to_string(),
         point.counts.draws.to_string(),
+        count(point.counts.copies),
+        count(point.counts.barriers),
         error(point.error.arithmetic),
         error(point.error.setting),
         error(point.error.model),

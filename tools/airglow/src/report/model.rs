@@ -83,14 +83,25 @@ pub struct Point {
 /// Work of one run of the pass, the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Bytes read and written at least once.
+    /// Bytes that the method must read and write: its inputs once, its outputs as often as it writes them. Caches and
+    /// padding apart.
     pub bytes: u64,
-    /// Shader invocations.
+    /// Shader invocations; of a bake, its rays.
     pub invocations: u64,
     /// Compute dispatches.
     pub dispatches: u64,
     /// Draws.
     pub draws: u64,
+    /// Copies and fills; `None` where it was not counted.
+    #[serde(default)]
+    pub copies: Option<u64>,
+    /// Barriers; `None` where it was not counted.
+    #[serde(default)]
+    pub barriers: Option<u64>,
+    /// Bytes of all ranges bound to shaders, as draws and attachments, a range bound twice counted twice; `None` where it
+    /// was not counted.
+    #[serde(default)]
+    pub bound: Option<u64>,
 }
 
 /// Errors against the three truths; `None` where a truth does not apply.
@@ -217,7 +228,7 @@ pub mod testing {
             setting: setting.to_owned(),
             milliseconds: vec![milliseconds, milliseconds * 1.1, milliseconds * 0.9],
             memory: (milliseconds * 1000.0) as u64,
-            counts: Counts { bytes: 7, invocations: 5, dispatches: 1, draws: 0 },
+            counts: Counts { bytes: 7, invocations: 5, dispatches: 1, ..Counts::default() },
             error: Errors { arithmetic: Some(1e-7), setting: Some(error), ..Errors::default() },
         };
         let curve = Curve {

@@ -3,7 +3,7 @@
 use super::model::{Point, Report};
 use crate::failure::{Failure, Outcome};
 
-const HEADER: [&str; 21] = [
+const HEADER: [&str; 24] = [
     "pass",
     "device",
     "driver",
@@ -15,11 +15,14 @@ const HEADER: [&str; 21] = [
     "p5_ms",
     "p95_ms",
     "n",
-    "memory_bytes",
-    "moved_bytes",
+    "memory_held_bytes",
+    "read_written_bytes",
+    "bound_bytes",
     "invocations",
     "dispatches",
     "draws",
+    "copies",
+    "barriers",
     "error_arithmetic",
     "error_setting",
     "error_model",
@@ -58,6 +61,7 @@ pub fn csv(reports: &[Report]) -> Outcome<Vec<u8>> {
 fn numbers(point: &Point) -> Vec<String> {
     let time = point.time();
     let real = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6e}"));
+    let count = |value: Option<u64>| value.map_or(String::new(), |value| value.to_string());
     vec![
         real(time.map(|t| t.median)),
         real(time.map(|t| t.p5)),
@@ -65,9 +69,12 @@ fn numbers(point: &Point) -> Vec<String> {
         point.milliseconds.len().to_string(),
         point.memory.to_string(),
         point.counts.bytes.to_string(),
+        count(point.counts.bound),
         point.counts.invocations.to_string(),
         point.counts.dispatches.to_string(),
         point.counts.draws.to_string(),
+        count(point.counts.copies),
+        count(point.counts.barriers),
         real(point.error.arithmetic),
         real(point.error.setting),
         real(point.error.model),

@@ -3,15 +3,20 @@
 use airglow::relight::rivals::{self as contestants, Rival as Contestant, Task};
 use airglow::relight::{Bench, Method, Settings, Storage};
 
+use airglow_math::sequence::{hammersley, uniform_sphere};
+
 use super::choice;
 use super::errors;
-use super::rivals::{self, Timed};
+use super::rivals::{self, Timed, Transfer};
 use super::workload::{Effort, FULL_ORDER, Workload, truncate};
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
 use crate::output::Output;
 use crate::report::interleave;
 use crate::report::model::{Choice, Curve, Errors, Point};
+
+/// Normals of the skinned mesh that is timed, repeated for all its vertices.
+const NORMALS: u32 = 4096;
 
 /// What the curves are measured with.
 pub struct Measurement<'a> {
@@ -57,6 +62,42 @@ impl Measurement<'_> {
         let chosen = choice::fastest(&points, "compute")?;
         let question = "Compute into the vertex buffer, or the papers' fragment pass over a packed rectangle and a copy?";
         self.curve("method", question, points, chosen)
+    }
+
+    /// Baked vectors against the transfer that a kernel makes from current normals.
+    pub fn source(&self) -> Outcome<Curve> {
+        let (baked, skinned) = (Settings::default(), Settings { normals: true, ..Settings::default() });
+        let vectors = truncate(&self.workload.converged, baked.order);
+        let light = self.workload.light_of(baked.order);
+        let normals: Vec<[f32; 3]> =
+            (0..NORMALS).map(|i| uniform_sphere(hammersley(i, NORMALS)).as_vec3().to_array()).collect();
+        let sources = [
+            ("baked vectors", baked, Transfer::Baked(&vectors)),
+            ("current normals", skinned, Transfer::Normals(&normals)),
+        ];
+        let vertices = self.effort.vertices;
+        let all = sources.map(|(name, settings, transfer)| {
+            rivals::relight(self.device, name, settings, transfer, light, vertices)
+        });
+        let all = all.into_iter().collect::<Outcome<_>>()?;
+        let timed = rivals::measure(self.device, "sources", all, self.effort.rounds, self.output)?;
+        let points: Vec<Point> = timed.into_iter().map(|timed| point(timed, Errors::default())).collect();
+        let question = "What does the transfer of skinned meshes cost, which a kernel makes from the normals of the frame, \
+                        without shadow, beside reading vectors that were baked?";
+        let comparisons = interleave::compare(&points, sources[1].0).map_err(Failure::work)?;
+        Ok(Curve {
+            knob: "source of transfer".to_owned(),
+            question: question.to_owned(),
+            norm: "none: they answer different questions, and tests hold each to its own reference"
+                .to_owned(),
+            timed: format!(
+                "rotation of the light and the kernel over {vertices} vertices, device time of a frame; memory held is \
+                 that of vectors or normals, and of results"
+            ),
+            points,
+            chosen: None,
+            comparisons,
+        })
     }
 
     /// Layouts, workgroups and vertices of an invocation, beside moving the same bytes without arithmetic.
@@ -105,7 +146,8 @@ impl Measurement<'_> {
             let vectors = truncate(full, settings.order);
             let light = self.workload.light_of(settings.order);
             let vertices = self.effort.vertices;
-            all.push(rivals::relight(self.device, name, settings, &vectors, light, vertices)?);
+            let transfer = Transfer::Baked(&vectors);
+            all.push(rivals::relight(self.device, name, settings, transfer, light, vertices)?);
             let colours = self.colours(settings, full)?;
             found.push(errors::of(&colours, settings.order, full, &converged, self.workload)?);
         }
@@ -143,8 +185,8 @@ impl Measurement<'_> {
             question: question.to_owned(),
             norm: errors::norm(self.workload),
             timed: format!(
-                "rotation of the light and the kernel over {} vertices, device time of a frame; memory is what the \
-                 device holds (vectors, results), bytes moved are those of a frame: equal where a frame moves each byte \
+                "rotation of the light and the kernel over {} vertices, device time of a frame; memory held is that \
+                 of vectors and results, read + written are the bytes of a frame: equal where a frame moves each byte \
                  held once",
                 self.effort.vertices
             ),

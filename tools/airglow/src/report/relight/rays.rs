@@ -39,8 +39,8 @@ impl Measurement<'_> {
             ),
             norm: self.norm_of_rays(&truth, &points, order),
             timed: format!(
-                "a bake of order {order} of {} vertices on the CPU, all threads, in turn; memory is the cache file of \
-                 {} vertices, and nothing moves in a frame",
+                "a bake of order {order} of {} vertices on the CPU, all threads, in turn; memory held is the cache file \
+                 of {} vertices, invocations are rays, and a frame reads and writes nothing more for more of them",
                 self.workload.timed_vertices, self.workload.vertex_count
             ),
             points,

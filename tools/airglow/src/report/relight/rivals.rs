@@ -1,8 +1,7 @@
 //! Settings timed against one another: each a plan of its own, one frame of each in turn.
 
 use airglow::relight::curve;
-use airglow::relight::kernels::WORKGROUP;
-use airglow::relight::rivals::{Rival as Contestant, Task};
+use airglow::relight::rivals::Rival as Contestant;
 use airglow::relight::{Frame, Instance, Light, Method, Relight, Settings};
 use airglow_gpu::{Execution, Imports, Record, Timing};
 use airglow_graph::{Access, Graph};
@@ -11,9 +10,13 @@ use glam::DQuat;
 use super::workload::tile;
 use crate::failure::{Failure, Outcome};
 use crate::host::{device::Device, upload};
+use crate::measure::pass;
 use crate::output::Output;
 use crate::report::interleave::{self, Rounds};
 use crate::report::model::Counts;
+
+/// The pass that copies what changed to the device: a frame that repeats has none.
+const UPLOADS: &str = "relight uploads";
 
 /// A plan that can be run and timed, and what it does each frame.
 pub struct Rival {
@@ -23,8 +26,20 @@ pub struct Rival {
     timing: Timing,
     /// Keeps meshes and kernels alive.
     _relight: Option<Relight>,
-    counts: Counts,
+    /// Bytes that a frame must read and write.
+    bytes: u64,
+    /// Invocations of fragment shaders, which no recording shows.
+    fragments: u64,
     memory: u64,
+}
+
+/// Where the transfer of vertices comes from; repeated for as many as are lit.
+#[derive(Clone, Copy)]
+pub enum Transfer<'a> {
+    /// Baked vectors.
+    Baked(&'a [f32]),
+    /// Current normals, as of a skinned mesh: the vectors are made in the kernel.
+    Normals(&'a [[f32; 3]]),
 }
 
 /// What was measured of a rival.
@@ -39,20 +54,23 @@ pub struct Timed {
     pub memory: u64,
 }
 
-/// Relighting of `vertices` vertices with `vectors` (repeated as needed) under uniform light: the rotation of the
-/// light and the kernel over the vertices.
+/// Relighting of `vertices` vertices under uniform light: the rotation of the light and the kernel over the vertices.
 pub fn relight(
     device: &Device<'_>,
     name: impl Into<String>,
     settings: Settings,
-    vectors: &[f32],
+    transfer: Transfer<'_>,
     light: &[[f64; 3]],
     vertices: usize,
 ) -> Outcome<Rival> {
     let context = device.context();
     let mut relight = Relight::new(context, settings).map_err(Failure::work)?;
-    let tiled = tile(vectors, settings.order, vertices);
-    let mesh = relight.add_mesh(context, "rival", vertices as u32, Some(&tiled)).map_err(Failure::work)?;
+    let tiled = match transfer {
+        Transfer::Baked(vectors) => Some(tile(vectors, settings.order, vertices)),
+        Transfer::Normals(_) => None,
+    };
+    let mesh =
+        relight.add_mesh(context, "rival", vertices as u32, tiled.as_deref()).map_err(Failure::work)?;
     let padded: Vec<[f32; 4]> = light.iter().map(pad).collect();
     let light = device
         .run(|recorder| upload::buffer(recorder, "light", &padded, Access::ComputeStorageRead))
@@ -61,9 +79,19 @@ pub fn relight(
     let state = Access::ComputeStorageRead;
     let coefficients = graph.import_buffer("light", *light.desc(), state, state);
     imports.buffer(&coefficients, &light);
+    let mut instance = Instance::new(mesh);
+    if let Transfer::Normals(normals) = transfer {
+        let tiled: Vec<[f32; 3]> = normals.iter().copied().cycle().take(vertices).collect();
+        let normals = device
+            .run(|recorder| upload::buffer(recorder, "normals", &tiled, state))
+            .map_err(Failure::work)?;
+        let handle = graph.import_buffer("normals", *normals.desc(), state, state);
+        imports.buffer(&handle, &normals);
+        instance.normals = Some(handle);
+    }
     let frame = Frame {
         light: Light::Uniform { coefficients, rotation: DQuat::IDENTITY },
-        instances: vec![Instance::new(mesh)],
+        instances: vec![instance],
         target: None,
     };
     let relit = relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
@@ -71,17 +99,23 @@ pub fn relight(
         graph.export(results, Access::VertexBuffer);
     }
     let work = curve::counts(&settings, vertices as u32);
-    let fragment = settings.method == Method::Fragment;
-    let counts = Counts {
-        bytes: work.read + work.written,
-        // The light is rotated by one workgroup.
-        invocations: work.invocations + u64::from(WORKGROUP),
-        dispatches: if fragment { 1 } else { 2 },
-        draws: u64::from(fragment),
+    let read = match transfer {
+        Transfer::Baked(_) => work.read,
+        Transfer::Normals(_) => size_of::<[f32; 3]>() as u64 * vertices as u64,
     };
-    let memory = work.read + work.memory;
+    let fragments = if settings.method == Method::Fragment { work.invocations } else { 0 };
+    let (bytes, memory) = (read + work.written, read + work.memory);
     let (execution, timing) = prepare(device, graph)?;
-    Ok(Rival { name: name.into(), execution, imports, timing, _relight: Some(relight), counts, memory })
+    Ok(Rival {
+        name: name.into(),
+        execution,
+        imports,
+        timing,
+        _relight: Some(relight),
+        bytes,
+        fragments,
+        memory,
+    })
 }
 
 /// One of the pass's own contestants for the kernel over the vertices: a shape of it, a kernel that only moves the
@@ -90,17 +124,10 @@ pub fn contestant(device: &Device<'_>, contestant: &Contestant, vertices: usize)
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
     let count = vertices as u32;
     contestant.add(device.context(), &mut graph, &mut imports, count).map_err(Failure::work)?;
-    let compute = contestant.task != Task::Copy;
-    let group = contestant.vertices * contestant.workgroup;
-    let counts = Counts {
-        bytes: contestant.bytes(count),
-        invocations: if compute { u64::from(count.div_ceil(group) * contestant.workgroup) } else { 0 },
-        dispatches: u64::from(compute),
-        draws: 0,
-    };
     let (execution, timing) = prepare(device, graph)?;
-    let name = contestant.name();
-    Ok(Rival { name, execution, imports, timing, _relight: None, counts, memory: contestant.bytes(count) })
+    let bytes = contestant.bytes(count);
+    let (name, fragments, memory) = (contestant.name(), 0, bytes);
+    Ok(Rival { name, execution, imports, timing, _relight: None, bytes, fragments, memory })
 }
 
 fn pad(&[r, g, b]: &[f64; 3]) -> [f32; 4] {
@@ -122,8 +149,24 @@ impl Rival {
             return Err(Failure::work(format!("{}: the device gave no timestamps", self.name)));
         };
         let counted = self.timing.passes().iter().zip(&times.passes);
-        let counted = counted.filter(|(name, _)| name.as_str() != "relight uploads");
+        let counted = counted.filter(|(name, _)| name.as_str() != UPLOADS);
         Ok(1e3 * counted.map(|(_, seconds)| seconds).sum::<f64>())
+    }
+
+    /// The work of the frame that was recorded last, without uploads.
+    fn counts(&self) -> Counts {
+        let passes = pass::work(&self.execution).into_iter().filter(|pass| pass.name != UPLOADS);
+        let all =
+            passes.map(|pass| pass.counts).fold(airglow_gpu::Counts::default(), airglow_gpu::Counts::and);
+        Counts {
+            bytes: self.bytes,
+            invocations: all.invocations + self.fragments,
+            dispatches: all.dispatches,
+            draws: all.draws,
+            copies: Some(all.copies),
+            barriers: Some(all.barriers),
+            bound: Some(all.bound_bytes),
+        }
     }
 }
 
@@ -145,9 +188,9 @@ pub fn measure(
     let timed = rivals.into_iter().zip(samples);
     Ok(timed
         .map(|(rival, milliseconds)| Timed {
+            counts: rival.counts(),
             name: rival.name,
             milliseconds,
-            counts: rival.counts,
             memory: rival.memory,
         })
         .collect())

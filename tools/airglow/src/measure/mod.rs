@@ -1,0 +1,5 @@
+//! What passes do and take: counts beside times, what measuring costs, and all of it on a time line.
+
+pub mod pass;
+pub mod profiler;
+pub mod trace;

@@ -1,0 +1,105 @@
+//! The instruments of `render`: counts that must not change by accident, what measuring costs, and the time line.
+
+#![cfg(feature = "relight")]
+#![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use airglow_tests::golden::assert_text;
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// What `render --stat` writes of a small scene.
+fn render(folder: &Path, more: &[&str]) -> Value {
+    let scene = root().join("assets/scenes/spot.toml").display().to_string();
+    let small = ["-o", "a.png", "--size", "64x48", "--rays", "16", "--exposure", "1"];
+    let common = ["--stat", "stat.json", "--device", "cpu", "--quiet"];
+    let arguments = [&["render", &scene], &small[..], &common[..], more].concat();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_airglow")).current_dir(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    json(&folder.join("stat.json"))
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// The counts that are not 0 under a title, a line for each; nothing where all are.
+fn lines(title: &str, counts: &Value) -> String {
+    let some = counts.as_object().into_iter().flatten().filter(|(_, count)| **count != 0);
+    let lines: String = some.map(|(name, count)| format!("    {name} {count}\n")).collect();
+    if lines.is_empty() { lines } else { format!("  {title}\n{lines}") }
+}
+
+/// Times differ from machine to machine; these do not. llvmpipe's own counts are the same at vector widths of 128 to 512
+/// bits and at any number of threads.
+#[test]
+fn counts_of_every_pass_are_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = render(folder.path(), &["--frames", "1"]);
+    let later = render(folder.path(), &["--frames", "4", "--pipeline-statistics"]);
+    let mut text = "spot.toml, 64 x 48 pixels of 2 x 2 samples, on llvmpipe\n".to_owned();
+    let passes = |stat: &Value| stat["passes"].as_array().unwrap().clone();
+    for (first, later) in passes(&first).iter().zip(passes(&later)) {
+        assert_eq!(first["name"], later["name"]);
+        text += &format!("{}\n", later["name"].as_str().unwrap());
+        text += &lines("first frame", &first["counts"]);
+        text += &lines("later frames", &later["counts"]);
+        text += &lines("later frames, counted by the device", &later["pipeline_statistics"]);
+    }
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/counts.txt");
+    assert_text(&golden, &text);
+}
+
+#[test]
+fn a_frame_is_covered_and_measuring_has_a_price() {
+    let folder = tempfile::tempdir().unwrap();
+    let stat = render(folder.path(), &["--frames", "6"]);
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let (span, sum, coverage) =
+        (number(&stat["span_ms"]), number(&stat["sum_ms"]), number(&stat["coverage"]));
+    assert!(span > 0.0 && sum > 0.0, "{stat}");
+    assert!((0.5..1.5).contains(&coverage), "passes cover {coverage} of a frame that does nothing else");
+    let profiler = &stat["profiler"];
+    assert_eq!(profiler["pairs"], stat["frames"], "{profiler}");
+    for what in ["record_ms", "frame_ms"] {
+        let [low, median, high] = ["low", "median", "high"].map(|name| number(&profiler[what][name]));
+        assert!(low <= median && median <= high, "{what}: {low} <= {median} <= {high}");
+    }
+    assert!(stat["passes"][0].get("pipeline_statistics").is_none(), "not asked for");
+}
+
+#[test]
+fn a_trace_opens_with_both_lanes() {
+    let folder = tempfile::tempdir().unwrap();
+    let stat = render(folder.path(), &["--frames", "6", "--trace", "trace.json"]);
+    let trace = json(&folder.path().join("trace.json"));
+    let clocks = trace["otherData"]["clocks"].as_str().unwrap();
+    assert!(clocks.starts_with("calibrated"), "llvmpipe has VK_EXT_calibrated_timestamps: {clocks}");
+    let events = trace["traceEvents"].as_array().unwrap();
+    let times: Vec<f64> = events.iter().filter_map(|event| event["ts"].as_f64()).collect();
+    assert!(times.is_sorted(), "{times:?}");
+    let frames = stat["frames"].as_u64().unwrap() as usize;
+    for pass in stat["passes"].as_array().unwrap() {
+        let lane = |lane: u64| -> Vec<(f64, f64)> {
+            let here =
+                |event: &&Value| event["ph"] == "X" && event["tid"] == lane && event["name"] == pass["name"];
+            let span = |event: &Value| (event["ts"].as_f64().unwrap(), event["dur"].as_f64().unwrap());
+            events.iter().filter(here).map(span).collect()
+        };
+        let (recorded, worked) = (lane(1), lane(2));
+        assert_eq!((recorded.len(), worked.len()), (frames, frames), "{}", pass["name"]);
+        for (recorded, worked) in recorded.iter().zip(&worked) {
+            assert!(recorded.0 + recorded.1 <= worked.0, "{} ran before it was recorded", pass["name"]);
+        }
+    }
+    for lane in ["CPU: recording", "GPU: queue"] {
+        let named = |event: &&Value| event["name"] == "thread_name" && event["args"]["name"] == lane;
+        assert_eq!(events.iter().filter(named).count(), 1, "{lane}");
+    }
+}
