@@ -60,7 +60,15 @@ fn with_options<R>(
     let selector = global.device.as_deref().map_or(Ok(Selector::Best), str::parse);
     let Ok(selector) = selector;
     let options = OpenOptions { selector, validation: global.validate, ..options };
-    let open = OpenDevice::open(&options).map_err(Failure::device)?;
+    let open = OpenDevice::open(&options).map_err(|error| match error {
+        GpuError::Vulkan { result: vk::Result::ERROR_EXTENSION_NOT_PRESENT, .. }
+            if !options.device_extensions.is_empty() =>
+        {
+            let mend = "choose another with --device, or draw to a file with airglow render";
+            Failure::device(format!("the device cannot show on this display ({error}); {mend}"))
+        }
+        error => Failure::device(error),
+    })?;
     let log = open.messages();
     let result = {
         // SAFETY: `context` and, by the contract of this function, all that `work` makes from it are dropped in this
