@@ -103,3 +103,28 @@ fn a_trace_opens_with_both_lanes() {
         assert_eq!(events.iter().filter(named).count(), 1, "{lane}");
     }
 }
+
+#[test]
+fn a_plan_lists_what_its_passes_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let spot = root().join("assets/mesh/spot.glb").display().to_string();
+    let plan = |more: &[&str]| {
+        let arguments = [&["plan", &spot, "--measure", "--device", "cpu", "--quiet"], more].concat();
+        let output = Command::new(env!("CARGO_BIN_EXE_airglow"))
+            .current_dir(folder.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let json: Value = serde_json::from_str(&plan(&["--json"])).unwrap();
+    let steps: Vec<_> = json["steps"].as_array().unwrap().iter().map(|step| &step["name"]).collect();
+    let measured = json["measured"].as_array().unwrap();
+    assert_eq!(steps, measured.iter().map(|pass| &pass["name"]).collect::<Vec<_>>());
+    assert!(measured.iter().all(|pass| pass["median_ms"].as_f64().is_some_and(|time| time > 0.0)), "{json}");
+    assert_eq!(measured.last().unwrap()["counts"]["dispatches"], 1, "the tone map");
+    let text = plan(&[]);
+    let (_, measured) = text.split_once("measured (").unwrap();
+    assert!(measured.contains("tone map") && measured.contains("dispatches 1"), "{text}");
+}
