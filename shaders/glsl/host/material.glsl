@@ -11,5 +11,6 @@ layout(push_constant) uniform Material {
     vec2 uv_offset;
     // 1: unlit, the base colour is the picture.
     uint unlit;
-    uint unused;
+    // Halves: metallic, roughness.
+    uint surface;
 } material;

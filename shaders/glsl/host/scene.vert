@@ -5,6 +5,8 @@
 // AIRGLOW_RELIGHT 1: the relight pass has rendered the light that a white diffuse surface sends out into a vertex
 // array, bound as one more attribute. 0: the room is absent, and the draw has no such input.
 
+// HOST_LIGHTS 1: the scene has lights that shine on surfaces, whose place and normal the fragment stage needs.
+
 #include "host/frame.glsl"
 #include "host/material.glsl"
 
@@ -13,13 +15,28 @@ layout(location = 1) in vec2 uv;
 #if AIRGLOW_RELIGHT
 layout(location = 2) in vec4 colour;
 #endif
+#if HOST_LIGHTS
+layout(location = 3) in vec3 normal;
+#endif
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec3 out_light;
+#if HOST_LIGHTS
+layout(location = 2) out vec3 out_normal;
+layout(location = 3) out vec3 out_position;
+#endif
 
 void main()
 {
-    gl_Position = frame.clip_from_world * (material.world_from_object * vec4(position, 1.0));
+    vec4 place = material.world_from_object * vec4(position, 1.0);
+    gl_Position = frame.clip_from_world * place;
+#if HOST_LIGHTS
+    // The cofactors turn normals as the inverse transpose does, up to their length.
+    mat3 linear = mat3(material.world_from_object);
+    mat3 cofactors = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
+    out_normal = cofactors * normal;
+    out_position = place.xyz;
+#endif
     out_uv = vec2(dot(material.uv_linear.xy, uv), dot(material.uv_linear.zw, uv)) + material.uv_offset;
 #if AIRGLOW_RELIGHT
     out_light = colour.rgb;

@@ -7,10 +7,11 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use serde_json::{Value, json};
 
 use crate::error::Error;
+use crate::glb::{self, Buffers};
 use crate::mesh::Mesh;
 
 /// Where the camera stands and what it looks at, metres.
@@ -93,82 +94,31 @@ fn classify(nave: &Mesh, triangle: &[u32; 3], size: usize, low: Vec3, high: Vec3
 }
 
 fn write(path: &Path, parts: &[Mesh], blocks: &[Mesh]) -> Result<(), Error> {
-    let mut buffer = Vec::new();
-    let mut accessors = Vec::new();
-    let mut views = Vec::new();
-    let mut primitive = |mesh: &Mesh, material: usize| -> Value {
-        let mut accessor = |bytes: &[u8], description: Value| {
-            views.push(json!({"buffer": 0, "byteOffset": buffer.len(), "byteLength": bytes.len()}));
-            buffer.extend_from_slice(bytes);
-            let mut description = description;
-            description["bufferView"] = json!(views.len() - 1);
-            accessors.push(description);
-            accessors.len() - 1
-        };
-        let (low, high) = mesh.extent();
-        let count = mesh.positions.len();
-        let positions = accessor(
-            bytemuck::cast_slice(&mesh.positions),
-            json!({"componentType": 5126, "type": "VEC3", "count": count, "min": low.to_array(), "max": high.to_array()}),
-        );
-        let normals = accessor(
-            bytemuck::cast_slice(&mesh.normals),
-            json!({"componentType": 5126, "type": "VEC3", "count": count}),
-        );
-        let indices = accessor(
-            bytemuck::cast_slice(&mesh.indices),
-            json!({"componentType": 5125, "type": "SCALAR", "count": mesh.indices.len()}),
-        );
-        json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices, "material": material})
-    };
-    let building: Vec<Value> = parts.iter().enumerate().map(|(index, part)| primitive(part, index)).collect();
+    let mut buffers = Buffers::default();
+    let building: Vec<Value> =
+        parts.iter().enumerate().map(|(index, part)| buffers.primitive(part, index)).collect();
     let altar = PARTS.len() - 1;
-    let stands: Vec<Value> = blocks.iter().map(|block| primitive(block, altar)).collect();
+    let stands: Vec<Value> = blocks.iter().map(|block| buffers.primitive(block, altar)).collect();
     let materials: Vec<Value> = PARTS
         .iter()
-        .map(|Part { name, base_colour: [red, green, blue], roughness, .. }| {
-            json!({"name": name, "pbrMetallicRoughness": {
-                "baseColorFactor": [red, green, blue, 1.0],
-                "metallicFactor": 0.0, "roughnessFactor": roughness}})
-        })
+        .map(|Part { name, base_colour, roughness, .. }| glb::material(name, *base_colour, 0.0, *roughness))
         .collect();
-    let towards = (TARGET - EYE).normalize();
-    let yaw = f32::atan2(-towards.x, -towards.z);
-    let rotation = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(towards.y.asin());
-    let document = json!({
-        "asset": {"version": "2.0", "generator": "xtask cloister", "extras": {"licence": "CC0"}},
-        "scene": 0,
-        "scenes": [{"nodes": [0, 1, 2]}],
-        "nodes": [
-            {"name": "building", "mesh": 0},
-            {"name": "blocks", "mesh": 1},
-            {"name": "camera", "camera": 0, "translation": EYE.to_array(), "rotation": rotation.to_array()},
-        ],
-        "meshes": [{"name": "building", "primitives": building}, {"name": "blocks", "primitives": stands}],
-        "materials": materials,
-        "cameras": [{"type": "perspective", "name": "aisle", "perspective": {"yfov": 0.95, "znear": 0.1, "zfar": 100.0}}],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": buffer.len()}],
-    });
-    std::fs::write(path, pack(&document, buffer)).map_err(|source| Error::io(path, source))
-}
-
-/// A GLB container (glTF 2.0, section 4.4): header, JSON chunk, binary chunk, each padded to four bytes.
-fn pack(document: &Value, mut buffer: Vec<u8>) -> Vec<u8> {
-    let mut text = document.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    buffer.resize(buffer.len().next_multiple_of(4), 0);
-    let total = 12 + 8 + text.len() + 8 + buffer.len();
-    let mut bytes = Vec::with_capacity(total);
-    let words = |bytes: &mut Vec<u8>, words: &[usize]| {
-        bytes.extend(words.iter().flat_map(|&word| (word as u32).to_le_bytes()));
-    };
-    words(&mut bytes, &[0x4654_6C67, 2, total, text.len(), 0x4E4F_534A]);
-    bytes.extend_from_slice(&text);
-    words(&mut bytes, &[buffer.len(), 0x004E_4942]);
-    bytes.extend_from_slice(&buffer);
-    bytes
+    buffers.write(
+        path,
+        json!({
+            "asset": {"version": "2.0", "generator": "xtask cloister", "extras": {"licence": "CC0"}},
+            "scene": 0,
+            "scenes": [{"nodes": [0, 1, 2]}],
+            "nodes": [
+                {"name": "building", "mesh": 0},
+                {"name": "blocks", "mesh": 1},
+                {"name": "camera", "camera": 0, "translation": EYE.to_array(), "rotation": glb::look(EYE, TARGET)},
+            ],
+            "meshes": [{"name": "building", "primitives": building}, {"name": "blocks", "primitives": stands}],
+            "materials": materials,
+            "cameras": [{"type": "perspective", "name": "aisle", "perspective": {"yfov": 0.95, "znear": 0.1, "zfar": 100.0}}],
+        }),
+    )
 }
 
 impl Mesh {

@@ -7,6 +7,7 @@ mod compile;
 mod debug_set;
 mod error;
 mod files;
+mod glb;
 mod header;
 mod manifest;
 mod mesh;
@@ -14,6 +15,7 @@ mod portability;
 mod room;
 mod room_lines;
 mod shaders;
+mod street;
 mod translate;
 
 use std::path::{Path, PathBuf};
@@ -64,6 +66,8 @@ enum Command {
     },
     /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
     Cloister,
+    /// Make assets/mesh/street.glb, the scene of lamps in fog
+    Street,
 }
 
 /// The workspace around the current folder; elsewhere, the one this command was built in.
@@ -84,6 +88,7 @@ fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
+        Command::Street => street::make(&workspace().join("assets")),
         Command::Room { name, remove: false } => room::make(&workspace(), &name),
         Command::Room { name, remove: true } => room::remove(&workspace(), &name),
         Command::Header { check } => header::run(&workspace(), check),

@@ -96,6 +96,8 @@ pub struct Arguments {
 pub enum PassName {
     /// Relighting by precomputed radiance transfer.
     Relight,
+    /// Scattering in the scene's medium; without it the air is clear.
+    Fog,
 }
 
 /// What `--stat` writes.
@@ -145,7 +147,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let statistics = arguments.pipeline_statistics;
         let mut picture = renderer.draw_counted(&settings, arguments.frames as usize, statistics)?;
         if arguments.split {
-            picture.replace_left_half(&renderer.draw(&Settings { without_relight: true, ..settings }, 1)?);
+            picture.replace_left_half(&renderer.draw(&arguments.split(settings), 1)?);
         }
         let cost = match (&arguments.stat, &picture.timing) {
             (Some(_), Some(timing)) => {
@@ -180,6 +182,7 @@ fn settings(arguments: &Arguments) -> Settings {
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
         without_relight: arguments.leaves_out_relight(),
+        without_fog: arguments.without == Some(PassName::Fog) && !arguments.split,
         window: None,
     }
 }
@@ -188,6 +191,14 @@ impl Arguments {
     /// Whether the pass is not even there; a split picture needs it.
     fn leaves_out_relight(&self) -> bool {
         self.without == Some(PassName::Relight) && !self.split
+    }
+
+    /// The settings of the left half of a split picture.
+    fn split(&self, settings: Settings) -> Settings {
+        match self.without {
+            Some(PassName::Fog) => Settings { without_fog: true, ..settings },
+            _ => Settings { without_relight: true, ..settings },
+        }
     }
 }
 

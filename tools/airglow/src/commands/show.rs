@@ -95,6 +95,7 @@ fn settings(arguments: &Arguments) -> Settings {
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: 0.0,
         without_relight: false,
+        without_fog: false,
         window: None,
     }
 }

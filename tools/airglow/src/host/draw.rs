@@ -11,6 +11,7 @@ use airglow_gpu::{
 use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
 use bytemuck::{Pod, Zeroable};
 
+use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
 use super::view::SharedView;
@@ -33,6 +34,15 @@ pub struct VertexColours {
     pub buffer: Handle<Buffer>,
     /// First byte and size for each instance.
     pub ranges: Vec<(u64, u64)>,
+}
+
+/// A view of the scene as the forward draw leaves it.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn {
+    /// Scene-linear radiance.
+    pub hdr: Handle<Image>,
+    /// 0 at the near plane, 1 at the far one and where there is nothing.
+    pub depth: Handle<Image>,
 }
 
 /// The picture as it leaves the graph.
@@ -79,11 +89,12 @@ struct DevelopConstants {
 }
 
 impl Pipelines {
-    /// Makes the pipelines; `hdr` is a float format with colour attachment and sampling.
-    pub fn new(context: &Context, hdr: vk::Format) -> Result<Self, GpuError> {
+    /// Makes the pipelines; `hdr` is a float format with colour attachment and sampling, `lights` says whether the scene
+    /// has lights.
+    pub fn new(context: &Context, hdr: vk::Format, lights: bool) -> Result<Self, GpuError> {
         Ok(Self {
-            lit: scene_pipeline(context, hdr, true)?,
-            ambient: scene_pipeline(context, hdr, false)?,
+            lit: scene_pipeline(context, hdr, true, lights)?,
+            ambient: scene_pipeline(context, hdr, false, lights)?,
             sky: sky_pipeline(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
@@ -99,17 +110,18 @@ impl Pipelines {
         })
     }
 
-    /// Draws the scene: lit by `colours` where a pass made them, else by the view's ambient light. Returns the HDR
-    /// target with the environment behind the surfaces.
+    /// Draws the scene: lit by `colours` where a pass made them, else by the view's ambient light, and by the scene's
+    /// `lights`. Returns the HDR target with the environment behind the surfaces, and the depth.
     pub fn scene(
         &self,
         graph: &mut Graph<Record>,
         scene: &Arc<DeviceScene>,
         view: &SharedView,
         colours: Option<&VertexColours>,
+        lights: Option<&Arc<LightsConstants>>,
         environment: Option<Handle<Image>>,
         size: [u32; 2],
-    ) -> Handle<Image> {
+    ) -> Drawn {
         let mut pass = graph.pass("scene draw", PassKind::Graphics);
         if let Some(colours) = colours {
             pass.read(&colours.buffer, Access::VertexBuffer);
@@ -122,7 +134,8 @@ impl Pipelines {
         let depth = pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite);
         let lit = if colours.is_some() { &self.lit } else { &self.ambient };
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
-        let (scene, view, colours) = (Arc::clone(scene), view.clone(), colours.cloned());
+        let (scene, view) = (Arc::clone(scene), view.clone());
+        let (colours, lights) = (colours.cloned(), lights.cloned());
         pass.record(Box::new(move |recorder, resources| {
             let targets = [resources.view(&hdr)?, resources.view(&depth)?];
             recorder.begin_rendering(&Rendering {
@@ -130,9 +143,10 @@ impl Pipelines {
                 depth: Some(DepthAttachment { view: &targets[1], load: Load::Clear(1.0), write: true }),
             })?;
             let view = recorder.upload(&[view.get()])?;
+            let lights = lights.as_deref().map(|lights| recorder.upload(&[*lights])).transpose()?;
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
-                record_draw(recorder, resources, &pipeline, draw, &view, colours)?;
+                record_draw(recorder, resources, &pipeline, draw, &view, lights.as_ref(), colours)?;
             }
             if let Some(environment) = &scene.environment {
                 recorder.bind_graphics(
@@ -147,7 +161,7 @@ impl Pipelines {
             }
             recorder.end_rendering()
         }));
-        hdr
+        Drawn { hdr, depth }
     }
 
     /// Develops the HDR target of a view into its region of two buffers of the host's. Returns the buffers with it in
@@ -207,47 +221,60 @@ fn record_draw(
     pipeline: &GraphicsPipeline,
     draw: &Draw,
     view: &BufferSlice,
+    lights: Option<&BufferSlice>,
     colours: Option<(&VertexColours, (u64, u64))>,
 ) -> Result<(), GpuError> {
-    recorder.bind_graphics(
-        pipeline,
-        &[
-            Binding::uniform(0, view),
-            Binding::sampled(1, draw.base_colour.clone()),
-            Binding::sampler(2, &draw.sampler),
-        ],
-    )?;
+    let mut bindings = vec![
+        Binding::uniform(0, view),
+        Binding::sampled(1, draw.base_colour.clone()),
+        Binding::sampler(2, &draw.sampler),
+    ];
+    bindings.extend(lights.map(|lights| Binding::uniform(3, lights)));
+    recorder.bind_graphics(pipeline, &bindings)?;
     recorder.push_constants(&draw.material)?;
     recorder.bind_vertex_buffer(0, &draw.mesh.positions)?;
     recorder.bind_vertex_buffer(1, &draw.mesh.texture_coordinates)?;
     if let Some((colours, (offset, size))) = colours {
         recorder.bind_vertex_buffer(2, resources.buffer(&colours.buffer)?.slice(offset, size)?)?;
     }
+    if let Some(normals) = &draw.mesh.normals {
+        recorder.bind_vertex_buffer(2 + u32::from(colours.is_some()), normals)?;
+    }
     recorder.bind_index_buffer(&draw.mesh.indices)?;
     recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
 }
 
-const DRAW_BINDINGS: [BindingDesc; 3] = [
+/// The last is for the lights, where there are any.
+const DRAW_BINDINGS: [BindingDesc; 4] = [
     BindingDesc::new(0, BindingKind::UniformBuffer),
     BindingDesc::new(1, BindingKind::SampledImage),
     BindingDesc::new(2, BindingKind::Sampler),
+    BindingDesc::new(3, BindingKind::UniformBuffer),
 ];
 
-fn scene_pipeline(context: &Context, hdr: vk::Format, relight: bool) -> Result<GraphicsPipeline, GpuError> {
+fn scene_pipeline(
+    context: &Context,
+    hdr: vk::Format,
+    relight: bool,
+    lights: bool,
+) -> Result<GraphicsPipeline, GpuError> {
     let attribute = |location, format| VertexAttribute { location, format, offset: 0 };
     let position = [attribute(0, vk::Format::R32G32B32_SFLOAT)];
     let texture_coordinates = [attribute(1, vk::Format::R32G32_SFLOAT)];
     let colour = [attribute(2, vk::Format::R32G32B32A32_SFLOAT)];
     let layout =
         |stride, attributes| VertexBufferLayout { stride, rate: vk::VertexInputRate::VERTEX, attributes };
-    let buffers = [layout(12, &position[..]), layout(8, &texture_coordinates[..]), layout(16, &colour[..])];
+    let normal = [attribute(3, vk::Format::R32G32B32_SFLOAT)];
+    let mut buffers = vec![layout(12, &position[..]), layout(8, &texture_coordinates[..])];
+    buffers.extend(relight.then(|| layout(16, &colour[..])));
+    buffers.extend(lights.then(|| layout(12, &normal[..])));
     context.create_graphics_pipeline(&GraphicsPipelineDesc {
         name: if relight { "scene, relit" } else { "scene, ambient" },
-        vertex: &shaders::scene_vertex(relight),
-        fragment: Some(&shaders::scene_fragment()),
-        bindings: &DRAW_BINDINGS,
+        vertex: &shaders::scene_vertex(relight, lights),
+        fragment: Some(&shaders::scene_fragment(lights)),
+        bindings: if lights { &DRAW_BINDINGS } else { &DRAW_BINDINGS[..3] },
         push_constant_size: size_of::<MaterialConstants>() as u32,
-        vertex_buffers: if relight { &buffers } else { &buffers[..2] },
+        vertex_buffers: &buffers,
         topology: vk::PrimitiveTopology::TRIANGLE_LIST,
         cull: vk::CullModeFlags::NONE,
         front_face: vk::FrontFace::COUNTER_CLOCKWISE,
@@ -262,7 +289,7 @@ fn sky_pipeline(context: &Context, hdr: vk::Format) -> Result<GraphicsPipeline, 
         name: "sky",
         vertex: &shaders::sky_vertex(),
         fragment: Some(&shaders::sky_fragment()),
-        bindings: &DRAW_BINDINGS,
+        bindings: &DRAW_BINDINGS[..3],
         push_constant_size: 0,
         vertex_buffers: &[],
         topology: vk::PrimitiveTopology::TRIANGLE_LIST,

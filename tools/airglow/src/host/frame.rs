@@ -1,10 +1,14 @@
 //! One frame, top to bottom, in the order light travels.
 
+use std::sync::Arc;
+
 use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
 use airglow_gpu::{Imports, Record, surface};
 use airglow_graph::{Access, Graph, Handle, Image};
 
-use super::draw::{self, Developed, Development, Region, VertexColours};
+use super::draw::{self, Developed, Development, Drawn, Region, VertexColours};
+#[cfg(feature = "fog")]
+use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
 use super::renderer::{Renderer, Settings};
 use super::view::SharedView;
@@ -26,6 +30,9 @@ pub struct Turning {
     pub rotations: Option<Rotations>,
     /// The views, which turn with the light.
     pub views: Vec<SharedView>,
+    /// The fog pass of each view that has one.
+    #[cfg(feature = "fog")]
+    pub fog: Vec<airglow::fog::Control>,
     /// The image of the window, another one in each frame; `None` without a window.
     pub window: Option<Handle<Image>>,
 }
@@ -97,11 +104,19 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let size = settings.size.map(|side| side * samples);
     let views: Vec<_> = renderer.views(settings, settings.turn).into_iter().map(SharedView::new).collect();
     let pipelines = &renderer.pipelines;
+    let lights = renderer.lights.map(|lights| match settings.without_fog {
+        true => Arc::new(lights.without_medium()),
+        false => Arc::new(lights),
+    });
     let mut drawn = Vec::with_capacity(views.len());
     for view in &views {
-        let colours = colours.as_ref();
-        drawn.push(pipelines.scene(&mut graph, &renderer.scene, view, colours, environment, size));
+        let (colours, lights) = (colours.as_ref(), lights.as_ref());
+        drawn.push(pipelines.scene(&mut graph, &renderer.scene, view, colours, lights, environment, size));
     }
+
+    // The medium before it dims them and glows.
+    #[cfg(feature = "fog")]
+    let fog = fog::add(renderer, settings, &mut graph, &mut drawn)?;
 
     // Exposure, tone map and encoding make the picture, the views side by side.
     let mut picture = |name, buffer: &airglow_gpu::Buffer| {
@@ -114,7 +129,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         display: picture("display picture", &renderer.display),
     };
     let development = Development { samples, exposure: settings.exposure, blue_first: settings.blue_first() };
-    for (column, hdr) in (0..).step_by(settings.size[0] as usize).zip(drawn) {
+    for (column, Drawn { hdr, .. }) in (0..).step_by(settings.size[0] as usize).zip(drawn) {
         let region = Region { size: settings.size, column, row_length: settings.picture_size()[0] };
         developed = pipelines.develop(&mut graph, hdr, developed, region, development);
     }
@@ -126,5 +141,15 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         image
     });
 
-    Ok(Declared { graph, imports, turning: Turning { rotations, views, window } })
+    Ok(Declared {
+        graph,
+        imports,
+        turning: Turning {
+            rotations,
+            views,
+            #[cfg(feature = "fog")]
+            fog,
+            window,
+        },
+    })
 }

@@ -68,10 +68,13 @@ impl Source {
 
     /// What the device must offer.
     pub fn requirements(&self, scene: &Scene) -> Requirements {
-        match self {
+        let requirements = match self {
             Self::Relight(_) => Relight::requirements(&relight_settings(scene)),
             Self::Colours(_) | Self::Even(_) => Requirements::engine(),
-        }
+        };
+        #[cfg(feature = "fog")]
+        let requirements = requirements.and(&super::fog::requirements(scene));
+        requirements
     }
 }
 

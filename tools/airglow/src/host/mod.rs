@@ -2,18 +2,22 @@
 //!
 //! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
 //! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws; `renderer` owns it all.
+//! draws, `lights` and `fog` what they take of the scene's lights and medium; `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;
 pub mod environment_samples;
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod fog;
 #[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
 #[cfg(feature = "relight")]
 pub mod lighting;
+#[cfg(feature = "relight")]
+pub mod lights;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;

@@ -14,8 +14,11 @@ use glam::DQuat;
 use super::device::Device;
 use super::draw::Pipelines;
 use super::environment_samples::EnvironmentSamples;
+#[cfg(feature = "fog")]
+use super::fog::SceneFog;
 use super::frame::{self, Declared, Turning};
 use super::lighting::{self, Lighting, Source};
+use super::lights::LightsConstants;
 use super::scene::{self, DeviceScene};
 use super::unread;
 use super::upload;
@@ -32,6 +35,11 @@ pub struct Renderer<'d> {
     pub(super) ambient: [f32; 3],
     pub(super) lighting: Lighting,
     pub(super) pipelines: Pipelines,
+    /// The scene's lights, in its medium.
+    pub(super) lights: Option<LightsConstants>,
+    /// The fog pass, where the scene has a medium.
+    #[cfg(feature = "fog")]
+    pub(super) fog: Option<SceneFog>,
     /// What the scene holds and no pass of this frame uses.
     pub(super) unread: Vec<LeftOut>,
     /// What the pass takes, or would take.
@@ -67,6 +75,8 @@ pub struct Settings {
     pub spin: f64,
     /// Leaves the relight pass out of the frame, though it is there: ambient light only.
     pub without_relight: bool,
+    /// Leaves the fog pass out of the frame: clear air.
+    pub without_fog: bool,
     /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
     /// order of their channels.
     pub window: Option<ImageDesc>,
@@ -159,7 +169,10 @@ impl<'d> Renderer<'d> {
             }),
             ambient,
             lighting: Lighting::new(device, scene, source)?,
-            pipelines: Pipelines::new(context, hdr).map_err(Failure::work)?,
+            pipelines: Pipelines::new(context, hdr, !scene.lights.is_empty()).map_err(Failure::work)?,
+            lights: LightsConstants::of_scene(scene),
+            #[cfg(feature = "fog")]
+            fog: SceneFog::new(context, scene, hdr)?,
             unread: unread::unread(scene),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
@@ -205,10 +218,23 @@ impl<'d> Renderer<'d> {
         view::row(&self.camera, settings.views).iter().map(constants).collect()
     }
 
+    /// What the fog pass needs of each camera, from left to right.
+    #[cfg(feature = "fog")]
+    pub(super) fn fog_views(&self, settings: &Settings) -> Vec<airglow::fog::View> {
+        let aspect = view::aspect(settings.size);
+        let cameras = view::row(&self.camera, settings.views);
+        let views = |fog: &SceneFog| cameras.iter().map(|camera| fog.view(camera, aspect)).collect();
+        self.fog.as_ref().map_or(Vec::new(), views)
+    }
+
     /// Turns the light and the sky of a declared frame; its plan stays.
     pub fn turn(&self, turning: &Turning, settings: &Settings, turn: DQuat) -> Outcome {
         for (shared, view) in turning.views.iter().zip(self.views(settings, turn)) {
             shared.set(view);
+        }
+        #[cfg(feature = "fog")]
+        for (control, view) in turning.fog.iter().zip(self.fog_views(settings)) {
+            control.set(&view).map_err(Failure::work)?;
         }
         match (&turning.rotations, &self.environment, &self.lighting) {
             (Some(rotations), Some(map), Lighting::Relight(lit)) => {

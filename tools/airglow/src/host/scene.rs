@@ -7,6 +7,7 @@ use airglow_scene::{
     AlphaMode, Encoding, Environment, IDENTITY_UV, Image, Material, MaterialClass, Mesh, Scene, Wrap,
 };
 use bytemuck::{Pod, Zeroable};
+use half::f16;
 
 use super::{texture, upload};
 
@@ -44,6 +45,8 @@ pub struct Draw {
 pub struct MeshBuffers {
     /// `[f32; 3]` a vertex.
     pub positions: Buffer,
+    /// `[f32; 3]` a vertex, where the scene has lights.
+    pub normals: Option<Buffer>,
     /// `[f32; 2]` a vertex.
     pub texture_coordinates: Buffer,
     /// `u32` each.
@@ -62,14 +65,15 @@ pub struct MaterialConstants {
     uv_linear: [f32; 4],
     uv_offset: [f32; 2],
     unlit: u32,
-    unused: u32,
+    surface: u32,
 }
 
 /// Uploads the scene; the recorder's commands must be done before the first frame.
 pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene, GpuError> {
     let context = recorder.context();
+    let lit = !scene.lights.is_empty();
     let meshes =
-        scene.meshes.iter().map(|mesh| upload_mesh(recorder, mesh)).collect::<Result<Vec<_>, _>>()?;
+        scene.meshes.iter().map(|mesh| upload_mesh(recorder, mesh, lit)).collect::<Result<Vec<_>, _>>()?;
     let white =
         upload::image(recorder, "white", COLOUR, &[(1, 1, vec![[255_u8; 4]])], Access::FragmentSampled)?;
     let images =
@@ -94,11 +98,13 @@ pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene,
 
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
-fn upload_mesh(recorder: &mut Recorder<'_>, mesh: &Mesh) -> Result<MeshBuffers, GpuError> {
+fn upload_mesh(recorder: &mut Recorder<'_>, mesh: &Mesh, lit: bool) -> Result<MeshBuffers, GpuError> {
+    let normals = lit.then(|| upload::buffer(recorder, &mesh.name, &mesh.normals, Access::VertexBuffer));
     let blank = vec![[0.0_f32; 2]; mesh.positions.len()];
     let texture_coordinates = if mesh.uv0.is_empty() { &blank } else { &mesh.uv0 };
     Ok(MeshBuffers {
         positions: upload::buffer(recorder, &mesh.name, &mesh.positions, Access::VertexBuffer)?,
+        normals: normals.transpose()?,
         texture_coordinates: upload::buffer(recorder, &mesh.name, texture_coordinates, Access::VertexBuffer)?,
         indices: upload::buffer(recorder, &mesh.name, &mesh.indices, Access::IndexBuffer)?,
         index_count: mesh.indices.len() as u32,
@@ -157,7 +163,10 @@ impl MaterialConstants {
             uv_linear: [rows[0][0], rows[0][1], rows[1][0], rows[1][1]],
             uv_offset: [rows[0][2], rows[1][2]],
             unlit: u32::from(material.class == MaterialClass::Unlit),
-            unused: 0,
+            surface: [material.metallic, material.roughness]
+                .map(|value| u32::from(f16::from_f32(value).to_bits()))
+                .into_iter()
+                .rfold(0, |packed, half| packed << 16 | half),
         }
     }
 }

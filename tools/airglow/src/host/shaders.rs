@@ -12,14 +12,20 @@ macro_rules! module {
     };
 }
 
-/// The vertex stage of the forward draw; with `relight` it reads the vertex array that the pass renders to.
-pub fn scene_vertex(relight: bool) -> Vec<u32> {
-    if relight { module!("scene_vertex.AIRGLOW_RELIGHT") } else { module!("scene_vertex") }
+/// The vertex stage of the forward draw; with `relight` it reads the vertex array that the pass renders to, with
+/// `lights` the normals.
+pub fn scene_vertex(relight: bool, lights: bool) -> Vec<u32> {
+    match (relight, lights) {
+        (false, false) => module!("scene_vertex"),
+        (true, false) => module!("scene_vertex.AIRGLOW_RELIGHT"),
+        (false, true) => module!("scene_vertex.HOST_LIGHTS"),
+        (true, true) => module!("scene_vertex.AIRGLOW_RELIGHT.HOST_LIGHTS"),
+    }
 }
 
-/// The fragment stage of the forward draw.
-pub fn scene_fragment() -> Vec<u32> {
-    module!("scene_fragment")
+/// The fragment stage of the forward draw, without or with the scene's lights.
+pub fn scene_fragment(lights: bool) -> Vec<u32> {
+    if lights { module!("scene_fragment.HOST_LIGHTS") } else { module!("scene_fragment") }
 }
 
 /// The vertex stage of the background.

@@ -3,12 +3,15 @@
 use airglow_graph::LeftOut;
 use airglow_scene::Scene;
 
+/// Lights that a draw takes; further ones are left out.
+pub const MAX_LIGHTS: usize = 64;
+
 /// One record for each kind of content that no pass of this frame uses.
 pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     let normal_textures = scene.materials.iter().filter(|material| material.normal_texture.is_some()).count();
     let kinds = [
-        (scene.lights.len(), "point, spot and directional lights", "a pass that lights by them"),
-        (usize::from(scene.medium.is_some()), "media", "a pass that draws fog"),
+        (scene.lights.len().saturating_sub(MAX_LIGHTS), "further lights", "fewer lights: a draw takes 64"),
+        (usize::from(scene.medium.is_some() && !cfg!(feature = "fog")), "media", "the room of the fog pass"),
         (scene.emitters.len(), "near emitters", "a pass that samples their radiance"),
         (scene.blockers.len(), "blockers", "a pass that casts their shadows"),
         (normal_textures, "normal textures", "a pass that filters and shades them"),
@@ -37,10 +40,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lights_of_a_file_are_named() {
+    fn lights_beyond_what_a_draw_takes_are_named() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/mesh/lights_room.glb");
-        let scene = airglow_scene::load(file.as_ref()).unwrap();
-        let found: Vec<String> = unread(&scene).into_iter().map(|left_out| left_out.what).collect();
-        assert_eq!(found, ["3 point, spot and directional lights"]);
+        let mut scene = airglow_scene::load(file.as_ref()).unwrap();
+        let found =
+            |scene: &Scene| unread(scene).into_iter().map(|left_out| left_out.what).collect::<Vec<_>>();
+        assert!(found(&scene).is_empty());
+        let light = scene.lights[0].clone();
+        scene.lights.resize(MAX_LIGHTS + 3, light);
+        assert_eq!(found(&scene), ["3 further lights"]);
     }
 }

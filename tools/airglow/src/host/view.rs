@@ -13,6 +13,7 @@ pub struct ViewConstants {
     clip_from_world: [[f32; 4]; 4],
     direction_from_clip: [[f32; 4]; 4],
     map_from_world: [[f32; 4]; 4],
+    eye: [f32; 4],
     ambient: [f32; 4],
 }
 
@@ -26,6 +27,7 @@ impl ViewConstants {
             clip_from_world: (clip_from_view * view).to_cols_array_2d(),
             direction_from_clip: (clip_from_view * without_translation).inverse().to_cols_array_2d(),
             map_from_world: Mat4::from_quat(rotation.inverse()).to_cols_array_2d(),
+            eye: camera.position().extend(1.0).to_array(),
             ambient: Vec3::from(ambient).extend(0.0).to_array(),
         }
     }

@@ -140,6 +140,7 @@ impl<'d> Viewer<'d> {
             size: [desc.extent[0], desc.extent[1]],
             exposure: self.show.start.exposure * self.controls.exposure(),
             without_relight: self.controls.without_relight,
+            without_fog: false,
             window: Some(desc),
             ..self.show.start
         };

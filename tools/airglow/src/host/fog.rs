@@ -1,0 +1,131 @@
+//! The scene's medium as the fog pass takes it.
+
+use airglow::fog::{self, Fog};
+use airglow::math::World;
+use airglow_gpu::ash::vk;
+use airglow_gpu::{Context, Record, Requirements};
+use airglow_graph::{Graph, LeftOut};
+use airglow_scene::{Camera, Light, LightKind, Projection, Scene};
+use glam::Vec3;
+
+use super::draw::Drawn;
+use super::renderer::{Renderer, Settings};
+use crate::failure::{Failure, Outcome};
+
+/// Radius of a lamp, metres: a glTF light has none, and a point's glow has no end.
+const LAMP_RADIUS: f64 = 0.05;
+
+/// The pass with the medium and the lights of a scene.
+pub struct SceneFog {
+    pub(super) pass: Fog,
+    medium: fog::Medium,
+    lights: Vec<fog::Light>,
+}
+
+/// What the device must offer for a scene.
+pub fn requirements(scene: &Scene) -> Requirements {
+    match scene.medium {
+        Some(_) => Fog::requirements(&fog::Settings::default()),
+        None => Requirements::engine(),
+    }
+}
+
+impl SceneFog {
+    /// Makes the pass where the scene has a medium; the picture is of format `hdr`.
+    pub fn new(context: &Context, scene: &Scene, hdr: vk::Format) -> Outcome<Option<Self>> {
+        let Some(medium) = scene.medium else { return Ok(None) };
+        let settings = fog::Settings { format: hdr, ..fog::Settings::default() };
+        let medium = fog::Medium {
+            extinction: medium.extinction.map(f64::from),
+            albedo: medium.albedo.map(f64::from),
+            phase: fog::Phase::HenyeyGreenstein { g: f64::from(medium.anisotropy) },
+            thinning: None,
+        };
+        let lights = scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect();
+        Ok(Some(Self { pass: Fog::new(context, settings).map_err(Failure::work)?, medium, lights }))
+    }
+
+    /// The view of a camera in a picture of that aspect.
+    pub fn view(&self, camera: &Camera, aspect: f32) -> fog::View {
+        let axis = |column: glam::Vec4| column.truncate().as_dvec3();
+        let aspect = f64::from(aspect);
+        let mut world = World::default();
+        let [x, y] = match camera.projection {
+            Projection::Perspective { vertical_angle, near, far, .. } => {
+                (world.depth.near, world.depth.far) = (f64::from(near), far.map(f64::from));
+                let tangent = (0.5 * f64::from(vertical_angle)).tan();
+                [aspect * tangent, tangent]
+            }
+            Projection::Orthographic { half_height, near, far, .. } => {
+                // A near plane of 0 means no less to an orthographic view, but to no other.
+                (world.depth.near, world.depth.far) = (f64::from(near.max(1e-6)), Some(f64::from(far)));
+                world.depth.orthographic = true;
+                [aspect * f64::from(half_height), f64::from(half_height)]
+            }
+        };
+        world.depth.reversed = false;
+        let transform = camera.transform;
+        let camera = fog::Camera {
+            position: camera.position().as_dvec3(),
+            right: axis(transform.x_axis),
+            up: axis(transform.y_axis),
+            forward: -axis(transform.z_axis),
+            edges: [-x, x, -y, y],
+        };
+        fog::View { world, camera, medium: self.medium, lights: self.lights.clone() }
+    }
+}
+
+/// A light inside the medium; a directional one is none.
+fn light(light: &Light) -> Option<fog::Light> {
+    let wide = |vector: [f32; 3]| Vec3::from(vector).as_dvec3();
+    let (position, intensity, range, cone) = match light.kind {
+        LightKind::Point { position, intensity, range } => (position, intensity, range, None),
+        LightKind::Spot { position, direction, intensity, range, inner, outer } => {
+            let [inner, outer] = [inner, outer].map(f64::from);
+            (position, intensity, range, Some(fog::Cone { direction: wide(direction), inner, outer }))
+        }
+        LightKind::Directional { .. } => return None,
+    };
+    let range = range.map(f64::from);
+    let point = fog::Light::point(wide(position), intensity.map(f64::from));
+    Some(fog::Light { radius: LAMP_RADIUS, cone, range, ..point })
+}
+
+/// Puts the medium before each view drawn; what is returned changes it before the plan is recorded again.
+pub fn add(
+    renderer: &Renderer<'_>,
+    settings: &Settings,
+    graph: &mut Graph<Record>,
+    drawn: &mut [Drawn],
+) -> Outcome<Vec<fog::Control>> {
+    let present = match (&renderer.fog, settings.without_fog) {
+        (Some(present), false) => present,
+        (Some(_), true) => {
+            graph.leave_out(left_out(
+                "the host was asked to leave it out (--without fog)",
+                "a frame without --without fog",
+            ));
+            return Ok(Vec::new());
+        }
+        (None, _) => {
+            graph.leave_out(left_out("the scene has no medium", "a [medium] in the scene file"));
+            return Ok(Vec::new());
+        }
+    };
+    let mut controls = Vec::new();
+    for (drawn, view) in drawn.iter_mut().zip(renderer.fog_views(settings)) {
+        let size = settings.size.map(|side| side * settings.samples);
+        let frame = fog::Frame { size, surface: drawn.hdr, depth: drawn.depth, target: None, view };
+        let fogged = present.pass.add(graph, &frame).map_err(Failure::work)?;
+        drawn.hdr = fogged.colour;
+        controls.extend(fogged.control);
+    }
+    Ok(controls)
+}
+
+/// The record of the pass being left out by the host.
+fn left_out(why: &str, would_return: &str) -> LeftOut {
+    let (what, why, would_return) = ("fog".to_owned(), why.to_owned(), would_return.to_owned());
+    LeftOut { what, why, bytes: 0, time: None, would_return }
+}

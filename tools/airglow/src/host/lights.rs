@@ -1,0 +1,74 @@
+//! The scene's point, spot and directional lights, as the forward draw takes them.
+
+use airglow_scene::{Light, LightKind, Scene};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+use super::unread::MAX_LIGHTS;
+
+/// `Light` of `host/lights.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct LightConstants {
+    position_range: [f32; 4],
+    intensity_scale: [f32; 4],
+    axis_offset: [f32; 4],
+}
+
+/// `Lights` of `host/lights.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct LightsConstants {
+    extinction: [f32; 4],
+    count: [u32; 4],
+    lights: [LightConstants; MAX_LIGHTS],
+}
+
+impl LightsConstants {
+    /// Those of a scene; `None` where it has none.
+    pub fn of_scene(scene: &Scene) -> Option<Self> {
+        if scene.lights.is_empty() {
+            return None;
+        }
+        let mut lights = [LightConstants::zeroed(); MAX_LIGHTS];
+        for (constants, light) in lights.iter_mut().zip(&scene.lights) {
+            *constants = LightConstants::new(light);
+        }
+        let count = [scene.lights.len().min(MAX_LIGHTS) as u32, 0, 0, 0];
+        let extinction = scene.medium.map_or(Vec3::ZERO, |medium| medium.extinction.into());
+        Some(Self { extinction: extinction.extend(0.0).to_array(), count, lights })
+    }
+
+    /// The same in clear air.
+    #[must_use]
+    pub fn without_medium(self) -> Self {
+        Self { extinction: [0.0; 4], ..self }
+    }
+}
+
+impl LightConstants {
+    fn new(light: &Light) -> Self {
+        let wide = |vector: [f32; 3], w: f32| Vec3::from(vector).extend(w).to_array();
+        match light.kind {
+            LightKind::Point { position, intensity, range } => Self {
+                position_range: wide(position, range.unwrap_or(0.0)),
+                intensity_scale: wide(intensity, 0.0),
+                axis_offset: wide([0.0; 3], 1.0),
+            },
+            LightKind::Spot { position, direction, intensity, range, inner, outer } => {
+                // KHR_lights_punctual: full at the inner angle, nothing at the outer.
+                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-3);
+                Self {
+                    position_range: wide(position, range.unwrap_or(0.0)),
+                    intensity_scale: wide(intensity, scale),
+                    axis_offset: wide(direction, -outer.cos() * scale),
+                }
+            }
+            LightKind::Directional { direction, irradiance } => Self {
+                position_range: wide([0.0; 3], -1.0),
+                intensity_scale: wide(irradiance, 0.0),
+                axis_offset: wide(direction, 1.0),
+            },
+        }
+    }
+}
