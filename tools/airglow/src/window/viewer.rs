@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use airglow_gpu::open::FrameLoop;
 use airglow_gpu::surface::SurfaceFrame;
-use airglow_gpu::{Execution, Imports, Timing, TimingSummary};
-use airglow_graph::{Handle, Image, ImageDesc};
+use airglow_gpu::{Timing, TimingSummary};
+use airglow_graph::ImageDesc;
 use airglow_scene::Camera;
 use glam::Vec3;
 use winit::application::ApplicationHandler;
@@ -18,8 +18,7 @@ use super::controls::{Action, Controls, Drag};
 use super::surface::ShownWindow;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::frame::{self, Declared, Turning};
-use crate::host::renderer::{Renderer, Settings, WARM_UP};
+use crate::host::renderer::{Compiled, Renderer, Settings};
 
 /// Frames that the times in the title are medians of.
 const TIMED_FRAMES: usize = 60;
@@ -77,15 +76,6 @@ pub struct Viewer<'d> {
     outcome: Outcome,
 }
 
-/// A frame's plan, ready to be recorded again.
-struct Compiled {
-    execution: Execution,
-    imports: Imports,
-    turning: Turning,
-    window: Handle<Image>,
-    timing: Option<Timing>,
-}
-
 /// The mouse.
 #[derive(Default)]
 struct Pointer {
@@ -140,7 +130,6 @@ impl<'d> Viewer<'d> {
             size: [desc.extent[0], desc.extent[1]],
             exposure: self.show.start.exposure * self.controls.exposure(),
             without_relight: self.controls.without_relight,
-            without_fog: false,
             window: Some(desc),
             ..self.show.start
         };
@@ -152,13 +141,15 @@ impl<'d> Viewer<'d> {
                 }
                 self.settings = settings;
                 *outdated = None;
-                outdated.insert(compile(self.device, &mut self.renderer, &settings)?)
+                outdated.insert(self.renderer.compile(&settings, TIMED_FRAMES, false)?)
             }
         };
         let turn = self.controls.turn() * settings.turn;
         self.renderer.turn(&compiled.turning, &settings, turn)?;
-        compiled.imports.image(&compiled.window, &frame.image);
-        let Compiled { execution, imports, timing, .. } = compiled;
+        let Compiled { execution, imports, timing, turning } = compiled;
+        if let Some(window) = &turning.window {
+            imports.image(window, &frame.image);
+        }
         self.device.frame(&mut self.frames, frame.semaphores, execution, imports, timing.as_mut())?;
         if let Some(window) = &mut self.window {
             self.stale = !window.present(frame)?;
@@ -289,17 +280,4 @@ impl ApplicationHandler for Viewer<'_> {
             window.window().request_redraw();
         }
     }
-}
-
-fn compile(device: &Device<'_>, renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Compiled> {
-    let context = device.context();
-    let Declared { graph, imports, turning } = frame::declare(renderer, settings)?;
-    let Some(window) = turning.window else {
-        return Err(Failure::work("a frame for the window was declared without it"));
-    };
-    let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
-    // A queue without timestamps draws all the same.
-    let timing = Timing::new(context, plan.steps().len() as u32, WARM_UP, TIMED_FRAMES).ok();
-    let execution = Execution::prepare(context, plan).map_err(Failure::work)?;
-    Ok(Compiled { execution, imports, turning, window, timing })
 }
