@@ -40,6 +40,7 @@ mod camera;
 mod control;
 mod declare;
 mod error;
+pub mod evaluator;
 mod fog;
 mod frame;
 mod kernels;
@@ -47,6 +48,7 @@ mod light;
 mod medium;
 mod pack;
 mod reach;
+pub mod reference;
 mod settings;
 
 pub use camera::Camera;
