@@ -12,6 +12,7 @@ use crate::options::Options;
 use crate::requirements::Requirements;
 use crate::shared::{DeviceFacts, Shared, lock};
 use ash::vk;
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A device as its host states it.
@@ -151,6 +152,11 @@ impl Context {
     /// The features the host enabled.
     pub fn features(&self) -> FeatureSet {
         self.shared.facts.features
+    }
+
+    /// How many pipelines were made so far, on all threads: a frame that makes one stutters.
+    pub fn pipelines_made(&self) -> u64 {
+        self.shared.pipelines_made.load(Ordering::Relaxed)
     }
 
     /// Bytes of the memory budget that are left; `None` when there is no budget.

@@ -20,6 +20,8 @@ pub(crate) struct Shared {
     ledger: Mutex<Ledger>,
     retired: Mutex<VecDeque<(u64, Retired)>>,
     frame: AtomicU64,
+    /// Made so far, those destroyed since included.
+    pub pipelines_made: AtomicU64,
 }
 
 /// Where memory comes from, and how much of it is held.
@@ -80,6 +82,7 @@ impl Shared {
             ledger: Mutex::default(),
             retired: Mutex::default(),
             frame: AtomicU64::new(0),
+            pipelines_made: AtomicU64::new(0),
         }
     }
 

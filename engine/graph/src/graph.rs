@@ -27,6 +27,15 @@ pub struct LeftOut {
     pub would_return: String,
 }
 
+/// The pipelines that a room holds ready, for `plan` to print.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+pub struct RoomPipelines {
+    /// The room.
+    pub room: String,
+    /// Permutations prepared for it, used in this frame or not.
+    pub prepared: usize,
+}
+
 /// A resource as declared.
 #[derive(Clone, Debug, Hash)]
 pub(crate) struct Resource {
@@ -67,6 +76,7 @@ pub(crate) struct Declaration {
     pub passes: Vec<Pass>,
     pub exports: Vec<Export>,
     pub left_out: Vec<LeftOut>,
+    pub pipelines: Vec<RoomPipelines>,
 }
 
 /// `name`, or `name#2`, `name#3` … where it is taken: messages and printed plans stay unambiguous when one pass
@@ -171,6 +181,14 @@ impl<R> Graph<R> {
     /// Records that something is not in this frame.
     pub fn leave_out(&mut self, left_out: LeftOut) {
         self.declaration.left_out.push(left_out);
+    }
+
+    /// Records how many pipelines a room holds ready; what is said for one room adds up.
+    pub fn pipelines(&mut self, room: &str, prepared: usize) {
+        match self.declaration.pipelines.iter_mut().find(|pipelines| pipelines.room == room) {
+            Some(pipelines) => pipelines.prepared += prepared,
+            None => self.declaration.pipelines.push(RoomPipelines { room: room.to_owned(), prepared }),
+        }
     }
 
     /// Leaves out a pass that would have made the next version of `input`: records it, and returns `input`

@@ -49,7 +49,7 @@ mod topology;
 pub use access::{Access, State};
 pub use error::GraphError;
 pub use extent::{ExtentBase, RelativeExtent};
-pub use graph::{Graph, LeftOut};
+pub use graph::{Graph, LeftOut, RoomPipelines};
 pub use handle::{Buffer, Handle, Image, ImageRange, Kind, ResourceId};
 pub use history::History;
 pub use options::{Limits, Options};

@@ -9,6 +9,7 @@ use std::path::Path;
 /// draw, and what is culled and left out.
 fn frame() -> Graph<&'static str> {
     let mut graph = Graph::new();
+    graph.pipelines("relight", 4);
     let sampled = vk::ImageUsageFlags::SAMPLED;
     let float4 = vk::Format::R32G32B32A32_SFLOAT;
     let environment = ImageDesc { usage: sampled, ..ImageDesc::new_2d(1024, 512, float4) };

@@ -36,6 +36,7 @@ impl Relight {
         frame: &GraphFrame,
     ) -> Result<Relit<Handle<Buffer>>, RelightError> {
         let Prepared { stages, needs, left_out, ranges, rotations } = self.prepare(context, frame)?;
+        graph.pipelines("relight", self.pipeline_count);
         left_out.into_iter().for_each(|left_out| graph.leave_out(left_out));
         let mut named = BTreeMap::new();
         for (resource, need) in &needs {

@@ -21,6 +21,16 @@ pub enum RelightError {
         /// What to choose instead.
         mend: &'static str,
     },
+    /// Settings that pipelines were not prepared for.
+    #[error(
+        "relight: {setting} is outside the envelope that was prepared: add it to Envelope::{field} and prepare"
+    )]
+    Envelope {
+        /// The setting.
+        setting: String,
+        /// The field of [`Envelope`](crate::Envelope) that lacks it.
+        field: &'static str,
+    },
     /// A slice whose length does not fit.
     #[error("relight: {what} of \"{name}\" has {actual} values but {expected} are needed: resize it")]
     Length {

@@ -11,8 +11,8 @@ use glam::DQuat;
 
 use crate::RelightError;
 use crate::bench::{Bench, Texels};
+use crate::envelope::compute;
 use crate::kernels;
-use crate::relight::compute;
 use crate::rotation::{Turn, normalised};
 use crate::settings::MAX_ORDER;
 use crate::stage::Pair;

@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::requirements::{FormatNeed, Limit, LimitNeed};
-use airglow_gpu::{
-    Blend, Buffer, ComputePipeline, ComputePipelineDesc, Context, GpuError, GraphicsPipeline,
-    GraphicsPipelineDesc, Label, Location, Requirements,
-};
+use airglow_gpu::{Buffer, Context, Label, Location, Requirements};
 use airglow_graph::BufferDesc;
 use airglow_math::World;
 
 use crate::RelightError;
 use crate::control::Projected;
-use crate::kernels::{self, Kernel, Source};
+use crate::envelope::{LightPipelines, Pipelines, VertexPipeline};
+use crate::kernels::Source;
 use crate::mesh::{Mesh, MeshId, Meshes};
 use crate::pack::{ChunkLimits, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
 use crate::resident::{OWNER, Resident};
@@ -22,21 +20,6 @@ use crate::tables::{MapTables, tensor};
 
 /// Format of the packed rectangle: what the vertex buffer holds.
 pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-
-/// A pipeline over the vertices of a chunk.
-#[derive(Clone)]
-pub(crate) enum VertexPipeline {
-    Compute(ComputePipeline),
-    Rectangle(GraphicsPipeline),
-}
-
-/// The kernels of the light.
-pub(crate) struct LightPipelines {
-    pub rows: ComputePipeline,
-    pub bands: ComputePipeline,
-    pub rotate: ComputePipeline,
-    pub matrix: Option<ComputePipeline>,
-}
 
 /// Tables for environments of one size, and what was projected with them.
 pub(crate) struct Map {
@@ -57,6 +40,8 @@ pub struct Relight {
     pub(crate) meshes: Meshes,
     /// Those that the settings can need.
     pub(crate) vertex_pipelines: BTreeMap<Source, VertexPipeline>,
+    /// Those that were prepared, needed or not.
+    pub(crate) pipeline_count: usize,
     /// With uniform light only.
     pub(crate) light_pipelines: Option<LightPipelines>,
     /// With uniform light only: the environment's coefficients.
@@ -92,12 +77,19 @@ impl Relight {
     /// [`RelightError::Order`] and [`RelightError::Settings`] for what has no kernel, [`RelightError::Gpu`] when the
     /// device refuses.
     pub fn new(context: &Context, settings: Settings) -> Result<Self, RelightError> {
-        let limits = context.limits();
-        let limits = ChunkLimits {
-            storage_range: u64::from(limits.max_storage_buffer_range),
-            workgroups: limits.max_compute_work_group_count[0],
-        };
-        Self::with_chunk_limits(context, settings, &limits)
+        Self::with_chunk_limits(context, settings, &chunk_limits(context))
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`RelightError::Envelope`] for settings outside the envelope they were prepared for; else as [`Relight::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        settings: Settings,
+        pipelines: &Pipelines,
+    ) -> Result<Self, RelightError> {
+        Self::make(context, settings, &chunk_limits(context), pipelines)
     }
 
     /// The same with limits below the device's, for memory budgets and tests of chunking.
@@ -110,6 +102,17 @@ impl Relight {
         limits: &ChunkLimits,
     ) -> Result<Self, RelightError> {
         settings.check()?;
+        Self::make(context, settings, limits, &Pipelines::prepare(context, settings.into())?)
+    }
+
+    fn make(
+        context: &Context,
+        settings: Settings,
+        limits: &ChunkLimits,
+        pipelines: &Pipelines,
+    ) -> Result<Self, RelightError> {
+        settings.check()?;
+        pipelines.envelope().check(&settings)?;
         let Some(chunk_vertices) = chunk_vertices(&settings, limits, alignment(&settings)) else {
             return Err(RelightError::Settings {
                 what: "not even the smallest chunk of vertices fits the storage-buffer range",
@@ -124,7 +127,7 @@ impl Relight {
             let desc = BufferDesc { size: 16 * settings.coefficients() as u64, usage };
             context.create_buffer(Label::new(OWNER, "relight environment light"), &desc, Location::Device)
         };
-        let tensor = match shadows(&settings) {
+        let tensor = match settings.shadows() {
             true => Some(Resident::new(context, "relight tensor", &tensor(settings.order)?)?),
             false => None,
         };
@@ -133,8 +136,9 @@ impl Relight {
             world: World::default(),
             chunk_vertices,
             meshes: Meshes::default(),
-            vertex_pipelines: vertex_pipelines(context, &settings)?,
-            light_pipelines: uniform.then(|| light_pipelines(context, &settings)).transpose()?,
+            vertex_pipelines: pipelines.vertices(&settings),
+            light_pipelines: pipelines.light(&settings),
+            pipeline_count: pipelines.count(),
             environment_light: uniform.then(light_buffer).transpose()?,
             map: None,
             tensor,
@@ -236,70 +240,19 @@ impl Relight {
     }
 }
 
+/// What the device lets a binding and a dispatch reach.
+fn chunk_limits(context: &Context) -> ChunkLimits {
+    let limits = context.limits();
+    ChunkLimits {
+        storage_range: u64::from(limits.max_storage_buffer_range),
+        workgroups: limits.max_compute_work_group_count[0],
+    }
+}
+
 /// Vertices that chunks and instances are aligned to.
 pub(crate) fn alignment(settings: &Settings) -> u32 {
     match settings.method {
         Method::Compute => VERTEX_ALIGNMENT,
         Method::Fragment => RECTANGLE_WIDTH,
     }
-}
-
-/// Whether light meets visibility, in some kernel that the settings can need.
-fn shadows(settings: &Settings) -> bool {
-    settings.visibility || settings.output == Output::Incident
-}
-
-/// A compute pipeline of a kernel.
-pub(crate) fn compute(context: &Context, kernel: &Kernel) -> Result<ComputePipeline, GpuError> {
-    context.create_compute_pipeline(&ComputePipelineDesc {
-        name: kernel.name,
-        spirv: &kernel.words(),
-        bindings: &kernel.binding_descs(),
-        push_constant_size: kernel.push_constant_size,
-    })
-}
-
-fn light_pipelines(context: &Context, settings: &Settings) -> Result<LightPipelines, GpuError> {
-    let order = settings.order;
-    let matrix = shadows(settings).then(|| compute(context, &kernels::product_matrix(order)));
-    Ok(LightPipelines {
-        rows: compute(context, &kernels::environment_rows(order))?,
-        bands: compute(context, &kernels::environment_bands(order))?,
-        rotate: compute(context, &kernels::rotate(order))?,
-        matrix: matrix.transpose()?,
-    })
-}
-
-fn vertex_pipelines(
-    context: &Context,
-    settings: &Settings,
-) -> Result<BTreeMap<Source, VertexPipeline>, GpuError> {
-    let pipeline = |source| {
-        let pipeline = match settings.method {
-            Method::Compute => {
-                VertexPipeline::Compute(compute(context, &kernels::vertices(settings, source))?)
-            }
-            Method::Fragment => VertexPipeline::Rectangle(rectangle(context, settings, source)?),
-        };
-        Ok((source, pipeline))
-    };
-    Source::all(settings).into_iter().map(pipeline).collect()
-}
-
-fn rectangle(context: &Context, settings: &Settings, source: Source) -> Result<GraphicsPipeline, GpuError> {
-    let kernel = kernels::rectangle(settings, source);
-    context.create_graphics_pipeline(&GraphicsPipelineDesc {
-        name: kernel.name,
-        vertex: &kernels::rectangle_vertex(),
-        fragment: Some(&kernel.words()),
-        bindings: &kernel.binding_descs(),
-        push_constant_size: kernel.push_constant_size,
-        vertex_buffers: &[],
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        cull: vk::CullModeFlags::NONE,
-        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-        depth: None,
-        colors: &[RECTANGLE_FORMAT],
-        blend: Blend::None,
-    })
 }

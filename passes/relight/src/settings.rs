@@ -105,6 +105,11 @@ impl Settings {
         4 * Layout::DEFAULT.words(self.order, self.storage) as u64
     }
 
+    /// Whether light meets visibility, in some kernel that the settings can need.
+    pub(crate) fn shadows(&self) -> bool {
+        self.visibility || self.output == Output::Incident
+    }
+
     /// Refuses what has no kernel.
     ///
     /// # Errors

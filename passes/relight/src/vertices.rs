@@ -7,11 +7,12 @@ use airglow_graph::{Access, PassKind};
 
 use crate::RelightError;
 use crate::builder::Builder;
+use crate::envelope::VertexPipeline;
 use crate::frame::{Frame, Instance, ResultRange};
 use crate::kernels::{self, Kernel, Source};
 use crate::mesh::{Mesh, stride};
 use crate::pack::{Chunk, RECTANGLE_WIDTH};
-use crate::relight::{Relight, VertexPipeline};
+use crate::relight::Relight;
 use crate::settings::{LightKind, Method, Output};
 use crate::stage::{Bound, ChunkConstants, ChunkWork, Resource, Work};
 

@@ -65,6 +65,7 @@ impl Context {
             Ok(pipelines) => pipelines.into_iter().next().unwrap_or_default(),
             Err((_, result)) => return Err(GpuError::Vulkan { call: "vkCreateComputePipelines", result }),
         };
+        self.shared.pipelines_made.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.shared.name(core.pipeline, vk::ObjectType::PIPELINE, desc.name);
         Ok(ComputePipeline { core: Arc::new(core), workgroup: workgroup_invocations(desc.spirv) })
     }

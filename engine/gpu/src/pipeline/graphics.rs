@@ -133,6 +133,7 @@ impl Context {
         let stages: Vec<_> =
             [Some(&vertex), fragment.as_ref()].into_iter().flatten().map(Module::stage).collect();
         core.pipeline = self.build(desc, &stages, core.layout)?;
+        self.shared.pipelines_made.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.shared.name(core.pipeline, vk::ObjectType::PIPELINE, desc.name);
         let vertex_buffers = desc.vertex_buffers.iter().map(|buffer| (buffer.stride, buffer.rate)).collect();
         let colors = desc.colors.to_vec();

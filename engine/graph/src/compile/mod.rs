@@ -51,6 +51,7 @@ pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits, options: &Options) ->
         culled: cull.culled,
         histories,
         left_out: declaration.left_out,
+        pipelines: declaration.pipelines,
         queue_family: limits.queue_family,
     })
 }

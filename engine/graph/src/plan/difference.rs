@@ -23,6 +23,8 @@ pub struct PlanDifference {
     pub brought_back: Vec<String>,
     /// Barriers of the first plan and of the second.
     pub barriers: [usize; 2],
+    /// Pipelines that all rooms together hold ready, in the first plan and in the second.
+    pub pipelines: [usize; 2],
     /// Bytes of the first plan and of the second.
     pub bytes: [PlanBytes; 2],
 }
@@ -51,6 +53,7 @@ impl<R> Plan<R> {
             left_out: without(&other_left_out, &left_out),
             brought_back: without(&left_out, &other_left_out),
             barriers: [self.barrier_count(), other.barrier_count()],
+            pipelines: [self.pipeline_count(), other.pipeline_count()],
             bytes: [self.bytes(), other.bytes()],
         }
     }
@@ -59,6 +62,10 @@ impl<R> Plan<R> {
     pub fn barrier_count(&self) -> usize {
         let steps: usize = self.steps.iter().map(|step| step.barriers.len()).sum();
         self.acquires.len() + steps + self.final_barriers.len() + self.releases.len()
+    }
+
+    fn pipeline_count(&self) -> usize {
+        self.pipelines.iter().map(|room| room.prepared).sum()
     }
 
     fn pass_names(&self) -> Vec<&str> {
@@ -96,8 +103,9 @@ fn without(all: &[&str], known: &[&str]) -> Vec<String> {
 impl PlanDifference {
     /// Whether nothing changes that a difference tells.
     pub fn is_empty(&self) -> bool {
-        let same = Self { barriers: self.barriers, bytes: self.bytes, ..Self::default() };
-        *self == same && self.barriers[0] == self.barriers[1] && self.bytes[0] == self.bytes[1]
+        let Self { barriers, pipelines, bytes, .. } = *self;
+        let same = Self { barriers, pipelines, bytes, ..Self::default() };
+        *self == same && barriers[0] == barriers[1] && pipelines[0] == pipelines[1] && bytes[0] == bytes[1]
     }
 }
 
@@ -125,6 +133,7 @@ impl Display for PlanDifference {
         let [before, after] = self.bytes;
         let counts = [
             ("barriers", self.barriers[0] as u64, self.barriers[1] as u64, ""),
+            ("pipelines", self.pipelines[0] as u64, self.pipelines[1] as u64, ""),
             ("imported", before.imported, after.imported, " B"),
             ("transient", before.transient, after.transient, " B"),
             ("transient at once", before.transient_peak, after.transient_peak, " B"),
@@ -144,6 +153,8 @@ mod tests {
 
     fn plan(size: u64, emitters: bool) -> Plan<()> {
         let mut graph = Graph::new();
+        graph.pipelines("relight", 2);
+        graph.pipelines("relight", usize::from(emitters));
         let mut relight = graph.pass("relight", PassKind::Compute);
         let mut colours =
             relight.create_buffer("colours", BufferDesc::new(size), Access::ComputeStorageWrite);
@@ -169,7 +180,7 @@ mod tests {
     fn a_difference_names_what_comes_and_goes() {
         let difference = plan(16, true).difference(&plan(32, false));
         let expected = "- pass emitters\n+ left out emitters\n~ resource colours: 16 B -> 32 B\n\
-                        ~ barriers: 3 -> 2 (-1)\n~ transient: 16 B -> 32 B (+16 B)\n\
+                        ~ barriers: 3 -> 2 (-1)\n~ pipelines: 3 -> 2 (-1)\n~ transient: 16 B -> 32 B (+16 B)\n\
                         ~ transient at once: 16 B -> 32 B (+16 B)\n";
         assert_eq!(difference.to_string(), expected);
     }

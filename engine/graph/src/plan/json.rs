@@ -3,7 +3,7 @@
 use super::text::flags;
 use super::{Barriers, CullReason, Culled, Lifetime, Plan, PlanAccess, PlanBytes, PlanResource, Step};
 use crate::access::State;
-use crate::graph::LeftOut;
+use crate::graph::{LeftOut, RoomPipelines};
 use crate::handle::{ImageRange, ResourceId};
 use crate::pass::PassKind;
 use crate::resource::{Origin, ResourceDesc};
@@ -24,6 +24,7 @@ impl<R> Plan<R> {
             releases: barriers(&self.releases),
             culled: self.culled.iter().map(|c| culled_json(c)).collect(),
             left_out: &self.left_out,
+            pipelines: &self.pipelines,
             bytes: self.bytes(),
         })
     }
@@ -132,6 +133,7 @@ struct PlanJson<'a> {
     releases: Vec<BarrierJson>,
     culled: Vec<CulledJson<'a>>,
     left_out: &'a [LeftOut],
+    pipelines: &'a [RoomPipelines],
     bytes: PlanBytes,
 }
 

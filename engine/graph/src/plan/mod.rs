@@ -14,7 +14,7 @@ pub use difference::{PlanDifference, Resized};
 pub use sharing::{Handover, Placement, Sharing};
 
 use crate::access::{Access, State};
-use crate::graph::LeftOut;
+use crate::graph::{LeftOut, RoomPipelines};
 use crate::handle::{Handle, ImageRange, Kind, ResourceId};
 use crate::pass::PassKind;
 use crate::resource::{Origin, ResourceDesc};
@@ -35,6 +35,7 @@ pub struct Plan<R> {
     pub(crate) releases: Barriers,
     pub(crate) culled: Vec<Culled>,
     pub(crate) left_out: Vec<LeftOut>,
+    pub(crate) pipelines: Vec<RoomPipelines>,
     pub(crate) histories: Vec<PlanHistory>,
     pub(crate) queue_family: u32,
 }
@@ -199,6 +200,11 @@ impl<R> Plan<R> {
         &self.left_out
     }
 
+    /// Pipelines that rooms hold ready, in the order they said so.
+    pub fn pipelines(&self) -> &[RoomPipelines] {
+        &self.pipelines
+    }
+
     /// Resources that remember one frame, in the order declared.
     pub fn histories(&self) -> &[PlanHistory] {
         &self.histories
@@ -235,6 +241,7 @@ impl<R> Plan<R> {
             releases: self.releases,
             culled: self.culled,
             left_out: self.left_out,
+            pipelines: self.pipelines,
             histories: self.histories,
             queue_family: self.queue_family,
         }

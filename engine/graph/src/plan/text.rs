@@ -38,6 +38,12 @@ impl<R> Plan<R> {
             let crate::LeftOut { what, why, bytes, would_return, .. } = left;
             writeln!(out, "  {what}: {why}; saves {bytes} B, time {time}; returns with {would_return}")?;
         }
+        if !self.pipelines.is_empty() {
+            writeln!(out, "pipelines")?;
+        }
+        for crate::RoomPipelines { room, prepared } in &self.pipelines {
+            writeln!(out, "  {room}: {prepared} prepared")?;
+        }
         let bytes = self.bytes();
         writeln!(out, "bytes")?;
         writeln!(out, "  imported {} B", bytes.imported)?;
