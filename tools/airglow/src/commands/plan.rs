@@ -7,11 +7,16 @@ use glam::DQuat;
 use crate::cli::Global;
 use crate::commands::render::PassName;
 use crate::commands::scene::SceneOptions;
+use crate::commands::what_if;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings};
+use crate::host::renderer::{Renderer, Settings, WARM_UP};
+use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
+
+/// Frames drawn for `--measure`.
+const MEASURED_FRAMES: usize = WARM_UP + 9;
 
 /// Print the plan of a frame: passes in order, barriers and their causes, memory; and what was left out, why, what
 /// that saved, and what would bring it back.
@@ -20,7 +25,9 @@ use crate::output::{Output, print};
   airglow plan assets/scenes/spot.toml
   airglow plan assets/scenes/spot.toml --as mermaid > plan.mmd
   airglow plan assets/scenes/spot.toml --check             have its barriers replayed
+  airglow plan assets/scenes/spot.toml --measure           with time and counts of each pass
   airglow plan assets/scenes/spot.toml --without relight --measure      what it would take
+  airglow plan assets/scenes/spot.toml --what-if order=6 --what-if storage=f16      what that would change
   airglow plan assets/mesh/spot.glb          no environment: relighting is left out, and the plan says so")]
 pub struct Arguments {
     #[command(flatten)]
@@ -31,12 +38,17 @@ pub struct Arguments {
     /// Leave a pass out.
     #[arg(long, value_enum)]
     without: Option<PassName>,
-    /// Measure the time that leaving it out saves: it is baked and drawn with for a few frames, and dropped again.
-    #[arg(long, requires = "without")]
+    /// Draw a few frames, and list time and counts of each pass. With --without also the time that leaving it out
+    /// saves: it is baked and drawn with, and dropped again.
+    #[arg(long)]
     measure: bool,
     /// Replay every barrier over every subresource by a checker that shares no code with the compiler.
     #[arg(long)]
     check: bool,
+    /// Print only what a change would add or take away: passes, bytes, barriers, pipelines. May be given several times;
+    /// an unknown key lists those there are.
+    #[arg(long, value_name = "KEY=VALUE", conflicts_with_all = ["form", "measure", "check"])]
+    what_if: Vec<String>,
     /// Views of the frame.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     views: u32,
@@ -57,19 +69,13 @@ pub enum Form {
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
     let (without, cache) = (arguments.without == Some(PassName::Relight), &arguments.scene.cache);
+    let settings = frame(arguments);
+    if !arguments.what_if.is_empty() {
+        return what_if::run(&scene, &settings, &arguments.what_if, global, output);
+    }
     let source = Source::of_scene(&scene, without, cache, output)?;
-    let whole = arguments.measure.then(|| Source::of_scene(&scene, false, cache, output)).transpose()?;
-    let settings = Settings {
-        size: [960, 540],
-        views: arguments.views,
-        samples: 1,
-        exposure: 1.0,
-        turn: DQuat::IDENTITY,
-        spin: 0.0,
-        without_relight: without,
-        without_fog: arguments.without == Some(PassName::Fog),
-        window: None,
-    };
+    let compared = arguments.measure && without;
+    let whole = compared.then(|| Source::of_scene(&scene, false, cache, output)).transpose()?;
     let requirements = whole.as_ref().unwrap_or(&source).requirements(&scene);
     let text = device::with(global, &requirements, |device| {
         let seconds = match &whole {
@@ -83,14 +89,50 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             let report = airglow_checker::check(&plan).map_err(Failure::check)?;
             output.say(report.to_string().trim_end());
         }
+        let passes = match arguments.measure {
+            true => {
+                let picture = renderer.draw(&settings, MEASURED_FRAMES)?;
+                Some(counted(&picture.passes, picture.timing.as_ref()))
+            }
+            false => None,
+        };
         let form = if output.json() { Form::Json } else { arguments.form };
         Ok(match form {
-            Form::Text => plan.text(),
+            Form::Text => plan.text() + &passes.map_or(String::new(), |passes| measured(&passes)),
             Form::Mermaid => plan.mermaid(),
-            Form::Json => plan.json().map_err(Failure::work)?,
+            Form::Json => with_passes(plan.json().map_err(Failure::work)?, passes)?,
         })
     })?;
     print(&text)
+}
+
+/// The frame asked for.
+fn frame(arguments: &Arguments) -> Settings {
+    Settings {
+        size: [960, 540],
+        views: arguments.views,
+        samples: 1,
+        exposure: 1.0,
+        turn: DQuat::IDENTITY,
+        spin: 0.0,
+        without_relight: arguments.without == Some(PassName::Relight),
+        without_fog: arguments.without == Some(PassName::Fog),
+        window: None,
+    }
+}
+
+/// The passes measured, as lines below those of the plan.
+fn measured(passes: &[PassStat]) -> String {
+    let lines: String = passes.iter().map(PassStat::line).collect();
+    format!("measured (median, 5th to 95th percentile; counts are the same on every machine)\n{lines}")
+}
+
+/// The plan as JSON, with the passes measured as `measured`.
+fn with_passes(plan: String, passes: Option<Vec<PassStat>>) -> Outcome<String> {
+    let Some(passes) = passes else { return Ok(plan) };
+    let mut plan: serde_json::Value = serde_json::from_str(&plan).map_err(Failure::work)?;
+    plan["measured"] = serde_json::to_value(passes).map_err(Failure::work)?;
+    serde_json::to_string_pretty(&plan).map_err(Failure::work)
 }
 
 /// What the pass takes in a frame that has it, seconds.

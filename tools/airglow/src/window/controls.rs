@@ -13,7 +13,7 @@ Mouse and keys:
   drag, right button    the light turns
   wheel                 nearer, farther
   Space                 stop and go on turning the light
-  r                     the relight pass on or off
+  r f                   the relight pass, the fog pass on or off
   + -                   exposure, half a stop up or down
   Home                  everything as at the start
   Escape q              quit";
@@ -36,6 +36,8 @@ pub enum Action {
     Pause,
     /// Relight, or leave the pass out.
     Relight,
+    /// Fog, or clear air.
+    Fog,
     /// Half a stop up.
     Brighter,
     /// Half a stop down.
@@ -52,6 +54,7 @@ impl Action {
             Key::Named(NamedKey::Space) => Some(Self::Pause),
             Key::Named(NamedKey::Home) => Some(Self::Home),
             Key::Character("r") => Some(Self::Relight),
+            Key::Character("f") => Some(Self::Fog),
             Key::Character("+" | "=") => Some(Self::Brighter),
             Key::Character("-") => Some(Self::Darker),
             _ => None,
@@ -85,6 +88,8 @@ pub struct Controls {
     pub paused: bool,
     /// Whether the relight pass is left out.
     pub without_relight: bool,
+    /// Whether the fog pass is left out.
+    pub without_fog: bool,
 }
 
 impl Controls {
@@ -94,6 +99,7 @@ impl Controls {
             Action::Quit => {}
             Action::Pause => self.paused = !self.paused,
             Action::Relight => self.without_relight = !self.without_relight,
+            Action::Fog => self.without_fog = !self.without_fog,
             Action::Brighter => self.half_stops = (self.half_stops + 1).min(40),
             Action::Darker => self.half_stops = (self.half_stops - 1).max(-40),
             Action::Home => *self = Self { paused: self.paused, ..Self::default() },

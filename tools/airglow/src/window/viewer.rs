@@ -130,6 +130,7 @@ impl<'d> Viewer<'d> {
             size: [desc.extent[0], desc.extent[1]],
             exposure: self.show.start.exposure * self.controls.exposure(),
             without_relight: self.controls.without_relight,
+            without_fog: self.controls.without_fog,
             window: Some(desc),
             ..self.show.start
         };
@@ -199,6 +200,9 @@ impl<'d> Viewer<'d> {
         }
         if self.controls.without_relight {
             title.push_str(", without relight");
+        }
+        if self.controls.without_fog {
+            title.push_str(", without fog");
         }
         if let Some(window) = &self.window {
             window.window().set_title(&title);
