@@ -2,6 +2,7 @@
 
 use airglow_gpu::{BindingDesc, BindingKind};
 
+use crate::FogError;
 use crate::medium::PhaseKind;
 use crate::settings::{Preset, Settings};
 
@@ -22,6 +23,13 @@ static AIRLIGHT: [[[&[u8]; 4]; 2]; 2] = [
     [phases!("airlight.FOG_TAPS6"), phases!("airlight.FOG_TAPS16")],
     [phases!("airlight.FOG_HEIGHT.FOG_TAPS6"), phases!("airlight.FOG_HEIGHT.FOG_TAPS16")],
 ];
+/// By preset, phase function.
+static ROWS: [[&[u8]; 4]; 2] = [phases!("airlight_rows.FOG_TAPS6"), phases!("airlight_rows.FOG_TAPS16")];
+/// By preset.
+static ROWS_HEIGHT: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/airlight_rows_height.FOG_TAPS6.isotropic.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/airlight_rows_height.FOG_TAPS16.isotropic.spv").as_slice(),
+];
 static RECTANGLE: &[u8] = include_bytes!("../../../shaders/spirv/fog/rectangle.spv").as_slice();
 
 /// Bindings of the airlight pass: the frame, the surfaces' radiance, their depth.
@@ -33,13 +41,39 @@ pub const BINDINGS: [BindingDesc; 3] = [
 
 /// The fragment stage of the airlight pass.
 pub(crate) fn airlight(settings: &Settings) -> Vec<u32> {
-    let phase = match settings.phase {
-        PhaseKind::Isotropic => 0,
-        PhaseKind::Polynomial => 1,
-        PhaseKind::HenyeyGreenstein => 2,
-        PhaseKind::Draine => 3,
-    };
-    words(AIRLIGHT[usize::from(settings.height)][usize::from(settings.preset == Preset::Reference)][phase])
+    words(AIRLIGHT[usize::from(settings.height)][settings.preset as usize][settings.phase as usize])
+}
+
+/// What `airlight.frag` takes for no surface, metres: above the 1e30 of the functions.
+pub(crate) const FARTHEST: f32 = 1e32;
+
+/// A kernel of the rows, by preset and phase function.
+#[derive(Clone, Copy)]
+pub(crate) enum Rows {
+    Homogeneous(Preset, PhaseKind),
+    Thinning(Preset),
+}
+
+impl Rows {
+    /// That of the settings.
+    pub(crate) fn of(settings: &Settings) -> Result<Self, FogError> {
+        match (settings.height, settings.phase) {
+            (false, phase) => Ok(Self::Homogeneous(settings.preset, phase)),
+            (true, PhaseKind::Isotropic) => Ok(Self::Thinning(settings.preset)),
+            (true, _) => Err(FogError::Kernel {
+                what: "thins with height",
+                mend: "rows of such a medium are isotropic",
+            }),
+        }
+    }
+}
+
+/// The airlight of rows of parameters.
+pub(crate) fn rows(rows: Rows) -> Vec<u32> {
+    words(match rows {
+        Rows::Homogeneous(preset, phase) => ROWS[preset as usize][phase as usize],
+        Rows::Thinning(preset) => ROWS_HEIGHT[preset as usize],
+    })
 }
 
 /// One triangle over the viewport.

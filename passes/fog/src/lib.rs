@@ -36,10 +36,12 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod bench;
 mod camera;
 mod control;
 mod declare;
 mod error;
+pub mod eval;
 pub mod evaluator;
 mod fog;
 mod frame;
@@ -51,6 +53,7 @@ mod reach;
 pub mod reference;
 mod settings;
 
+pub use bench::Bench;
 pub use camera::Camera;
 pub use control::Control;
 pub use error::FogError;

@@ -39,6 +39,24 @@ pub struct FrameConstants {
     lights: [LightConstants; MAX_LIGHTS],
 }
 
+impl FrameConstants {
+    pub(crate) fn first_light(&self) -> LightConstants {
+        self.lights[0]
+    }
+
+    pub(crate) fn extinction(&self) -> [f32; 4] {
+        self.extinction
+    }
+
+    pub(crate) fn scattering(&self) -> [f32; 4] {
+        self.scattering
+    }
+
+    pub(crate) fn phase(&self) -> [f32; 4] {
+        self.phase
+    }
+}
+
 /// A view as the shader takes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Packed {
@@ -87,7 +105,7 @@ pub(crate) fn pack(settings: &Settings, view: &View, size: [u32; 2]) -> Result<P
         }
     }
     let constants = FrameConstants {
-        start: rays.start.map(|vector| wide(vector, 0.0)),
+        start: rays.start.map(|vector| wide(vector, f64::from(u8::from(world.depth.orthographic)))),
         direction: rays.direction.map(|vector| wide(vector, 0.0)),
         depth: world.depth_coefficients().map(|value| value as f32),
         extinction: rgb(extinction, thinning),
@@ -132,7 +150,7 @@ fn pack_light(
     };
     let mut constants = LightConstants {
         position_radius: wide(position, world.distance(light.radius)),
-        intensity_reach: rgb(intensity, least_along),
+        intensity_reach: rgb(seen(view, intensity, position, world.distance(light.radius)), least_along),
         axis_cosine: [0.0, 0.0, 0.0, -2.0],
         falloff_range: [0.0; 4],
         low: [0.0; 4],
@@ -154,6 +172,15 @@ fn pack_light(
         constants.high = wide(ends[0].max(ends[1]), 0.0);
     }
     Some(constants)
+}
+
+/// `fog_seen` of `airlight.glsl`, in f64; left to the shader where each ray has an eye of its own.
+fn seen(view: &View, intensity: [f64; 3], position: DVec3, radius: f64) -> [f64; 3] {
+    if view.world.depth.orthographic || view.medium.thinning.is_some() {
+        return intensity;
+    }
+    let path = position.length().hypot(radius);
+    [0, 1, 2].map(|channel| intensity[channel] * (-view.medium.extinction[channel] * path).exp())
 }
 
 impl Rays {

@@ -20,12 +20,11 @@ pub(crate) enum Reach {
 /// most `most` times the integral of 1 / d^2 over the whole ray, (pi - g) / (distance sin g), and with a radius at most
 /// pi / radius; both fall with g.
 pub(crate) fn reach(most: f64, distance: f64, radius: f64, bound: f64) -> Reach {
-    // NaN, as of a distance of 0, is not below.
     if most <= 0.0 || (radius > 0.0 && most * PI / radius < bound) {
         return Reach::Nowhere;
     }
     let allowed = bound * distance / most;
-    if !(allowed > 1.0) {
+    if allowed <= 1.0 || distance == 0.0 {
         return Reach::Everywhere;
     }
     let (mut inside, mut outside) = (0.0, PI);

@@ -26,7 +26,13 @@ void main()
     vec3 airlight = vec3(0.0);
     for (int i = 0; i < frame.light_count; ++i) {
         FogLight light = frame.lights[i];
-        light.position_radius.xyz -= start;
+        if (frame.start[0].w > 0.5) {
+            // Parallel rays: each has an eye of its own.
+            light.position_radius.xyz -= start;
+            light.low.xyz -= start;
+            light.high.xyz -= start;
+            light.intensity_reach.rgb = fog_seen(medium, light.intensity_reach.rgb, light.position_radius);
+        }
         // Farther off the ray than this its airlight is below the bound.
         if (dot(light.position_radius.xyz, direction) < light.intensity_reach.w) { continue; }
         airlight += fog_airlight(medium, light, i, direction, distance);

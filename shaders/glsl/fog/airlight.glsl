@@ -26,7 +26,7 @@ struct FogMedium {
 // A light, relative to the eye.
 struct FogLight {
     vec4 position_radius;  // m
-    vec4 intensity_reach;  // W/sr times the light's scatter factor; cosine at the eye from which on it is left out
+    vec4 intensity_reach;  // W/sr, see fog_seen; least distance along a ray at which it is evaluated
     vec4 axis_cosine;      // of a spot's cone, away from the light; cosine of its half angle, -2 for none
     vec4 falloff_range;    // scale and offset of the cosine; range, m, 0 for none; 1 where it shines within a box
     vec4 low;              // corners of the box
@@ -46,6 +46,13 @@ float fog_phase(vec4 values, float cosine)
 #endif
 }
 
+// The smallest extinction of a channel that scatters at all.
+float fog_least(vec3 extinction)
+{
+    vec3 present = mix(extinction, vec3(1e30), equal(extinction, vec3(0.0)));
+    return min(present.x, min(present.y, present.z));
+}
+
 // (exp(-x) - 1) / -x: the mean of what thins over x scale heights.
 float fog_mean_density(float x)
 {
@@ -59,6 +66,17 @@ vec3 fog_transmittance(FogMedium medium, vec3 direction, float distance)
     return exp(-medium.extinction * distance * fog_mean_density(clamp(direction.y * distance * medium.thinning, -80.0, 1e30)));
 #else
     return exp(-medium.extinction * distance);
+#endif
+}
+
+// What FogLight holds of an intensity: times the light's scatter factor, and in a homogeneous medium what is left of it
+// when it arrives at the eye. A host that knows it in f64 computes it there: in f32 the exponent of a long path is coarse.
+vec3 fog_seen(FogMedium medium, vec3 intensity, vec4 position_radius)
+{
+#if FOG_HEIGHT
+    return intensity;
+#else
+    return intensity * exp(-medium.extinction * length(position_radius));
 #endif
 }
 
@@ -103,8 +121,7 @@ vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, f
     vec3 position = light.position_radius.xyz;
     FogPath path = fog_path(position, direction, light.position_radius.w);
     FogSegment segment = fog_segment(path, interval.x, interval.y - interval.x);
-    float least = min(medium.extinction.x, min(medium.extinction.y, medium.extinction.z));
-    FogTaps taps = fog_taps(path, segment, least);
+    FogTaps taps = fog_taps(path, segment, fog_least(medium.extinction));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < FOG_TAPS; ++i) {
         FogTap tap = fog_tap(taps, path, segment, i);
@@ -125,7 +142,7 @@ vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, f
             + to_light * density * fog_mean_density((position.y - point.y) * medium.thinning);
         sum += weight * density * exp(-medium.extinction * legs);
 #else
-        sum += weight * exp(-medium.extinction * (segment.shortest + tap.excess));
+        sum += weight * exp(-medium.extinction * (segment.before + tap.excess));
 #endif
     }
     return medium.scattering * light.intensity_reach.rgb * sum;

@@ -4,7 +4,7 @@ const int FOG_LIGHTS = 64;
 
 layout(std140, set = 0, binding = 0) uniform Frame {
     // Start and direction of a view ray, relative to the eye, both linear in the place in the picture: at its upper
-    // left, and the change to its right and lower edges.
+    // left, and the change to its right and lower edges. start[0].w: 1 where the starts differ.
     vec4 start[3];
     vec4 direction[3];
     vec4 depth;      // coefficients of common/depth.glsl
