@@ -45,6 +45,8 @@ impl AirlightRow {
     /// [`FogError::Range`] with the column.
     pub fn check(&self) -> Result<(), FogError> {
         let number = |name: &str, value: f64, sound, range| check(|| name.to_owned(), value, sound, range);
+        let extinction = self.extinction;
+        number("beta", extinction, (0.0..=1e6).contains(&extinction), "0 to 1e6 1/m")?;
         let length = |value: f64| (0.0..=1e15).contains(&value);
         number("d_sv", self.light_distance, length(self.light_distance), "a length from 0 to 1e15")?;
         let surface = length(self.distance) || self.distance == f64::INFINITY;

@@ -25,6 +25,8 @@ use crate::output::Output;
   environment-sh  order -> red, green, blue          --set image=FILE.exr, equirectangular
   sh-product      order, f, g -> product             order n in, order n out
   sh-rotate       order, f, qx, qy, qz, qw -> rotated   rotated(s) = f(q^-1 s q)
+  fog-airlight    beta, d_sv, d_vp, gamma -> radiance   also light_radius; phase (isotropic, hg:g, poly:w0;w1;w2;w3,
+                  draine:g;alpha); method (default, reference), or --set method=reference for all rows
 
 Example:
   printf 'order,f,qx,qy,qz,qw\\n2,1;0;0.5;0,0,1,0,1\\n' > rows.csv
@@ -56,6 +58,9 @@ pub enum Evaluator {
     ShProduct,
     /// A rotated function in spherical harmonics.
     ShRotate,
+    /// Airlight along a ray by a light of 1 W/sr, in a medium of albedo 1.
+    #[cfg(feature = "fog")]
+    FogAirlight,
 }
 
 impl Evaluator {
@@ -64,6 +69,8 @@ impl Evaluator {
             Self::EnvironmentSh => &["order"],
             Self::ShProduct => &["order", "f", "g"],
             Self::ShRotate => &["order", "f", "qx", "qy", "qz", "qw"],
+            #[cfg(feature = "fog")]
+            Self::FogAirlight => &["beta", "d_sv", "d_vp", "gamma"],
         }
     }
 
@@ -72,6 +79,8 @@ impl Evaluator {
             Self::EnvironmentSh => &["red", "green", "blue"],
             Self::ShProduct => &["product"],
             Self::ShRotate => &["rotated"],
+            #[cfg(feature = "fog")]
+            Self::FogAirlight => &["radiance"],
         }
     }
 
@@ -79,6 +88,8 @@ impl Evaluator {
         match self {
             Self::EnvironmentSh => &["image"],
             Self::ShProduct | Self::ShRotate => &[],
+            #[cfg(feature = "fog")]
+            Self::FogAirlight => &["method"],
         }
     }
 }
@@ -110,6 +121,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::EnvironmentSh => relight::environment_sh(&bench, &table, &settings),
             Evaluator::ShProduct => relight::sh_product(&bench, &table),
             Evaluator::ShRotate => relight::sh_rotate(&bench, &table),
+            #[cfg(feature = "fog")]
+            Evaluator::FogAirlight => {
+                let bench = airglow::fog::Bench { context: device.context(), run: &run };
+                eval::fog::airlight(&bench, &table, &settings)
+            }
         }
     })?;
     let rows = columns.written(arguments.reference);

@@ -1,11 +1,14 @@
 //! A pass's own code on rows of parameters: a table in, the same table with result columns out.
 
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod fog;
 pub mod number;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod table;
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 use table::RowResult;
 
@@ -40,4 +43,36 @@ pub fn names(results: &[&str], reference: bool) -> Vec<String> {
         names.extend(results.iter().map(|name| format!("{name}_ref")));
     }
     names
+}
+
+/// Splits the rows that could be read from the reasons of those that could not.
+pub fn accepted<T>(read: Vec<Result<T, String>>) -> (Vec<Result<(), String>>, Vec<T>) {
+    let mut rows = Vec::new();
+    let places = read.into_iter().map(|row| row.map(|row| rows.push(row))).collect();
+    (places, rows)
+}
+
+/// Puts results back among the rows that were refused before they reached the GPU.
+pub fn rejoin<T, E>(
+    places: Vec<Result<T, String>>,
+    results: Vec<Result<E, impl Display>>,
+    values: impl Fn(E) -> (Vec<Vec<f64>>, Vec<Vec<f64>>),
+) -> Vec<(RowResult, RowResult)> {
+    let mut results = results.into_iter();
+    places
+        .into_iter()
+        .map(|place| {
+            let result = place.and_then(|_| match results.next() {
+                Some(result) => result.map_err(|error| error.to_string()),
+                None => Err("the pass gave no result for this row".to_owned()),
+            });
+            match result {
+                Ok(found) => {
+                    let (values, reference) = values(found);
+                    (Ok(values), Ok(reference))
+                }
+                Err(reason) => (Err(reason.clone()), Err(reason)),
+            }
+        })
+        .collect()
 }

@@ -9,7 +9,7 @@ use airglow_scene::image_io::read_image;
 use glam::DQuat;
 
 use super::table::{RowResult, Table};
-use super::{Columns, Settings};
+use super::{Columns, Settings, accepted, rejoin};
 use crate::failure::{Failure, Outcome};
 
 /// `environment-sh`: order in, the environment's SH RGB out.
@@ -54,40 +54,8 @@ pub fn sh_rotate(bench: &Bench<'_>, table: &Table) -> Outcome<Columns> {
     Ok(Columns { rows: one_vector(places, results) })
 }
 
-/// Splits the rows that could be read from the reasons of those that could not.
-fn accepted<T>(read: Vec<Result<T, String>>) -> (Vec<Result<(), String>>, Vec<T>) {
-    let mut rows = Vec::new();
-    let places = read.into_iter().map(|row| row.map(|row| rows.push(row))).collect();
-    (places, rows)
-}
-
 fn one_vector(places: Vec<Result<(), String>>, results: Rows<Evaluated>) -> Vec<(RowResult, RowResult)> {
     rejoin(places, results, |found| (vec![found.values], vec![found.reference]))
-}
-
-/// Puts results back among the rows that were refused before they reached the GPU.
-fn rejoin<T, E>(
-    places: Vec<Result<T, String>>,
-    results: Rows<E>,
-    values: impl Fn(E) -> (Vec<Vec<f64>>, Vec<Vec<f64>>),
-) -> Vec<(RowResult, RowResult)> {
-    let mut results = results.into_iter();
-    places
-        .into_iter()
-        .map(|place| {
-            let result = place.and_then(|_| match results.next() {
-                Some(result) => result.map_err(|error| error.to_string()),
-                None => Err("the pass gave no result for this row".to_owned()),
-            });
-            match result {
-                Ok(found) => {
-                    let (values, reference) = values(found);
-                    (Ok(values), Ok(reference))
-                }
-                Err(reason) => (Err(reason.clone()), Err(reason)),
-            }
-        })
-        .collect()
 }
 
 /// An image that the pass refuses is the input's fault; anything else is not.

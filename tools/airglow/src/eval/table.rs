@@ -82,6 +82,12 @@ impl Table {
         Ok(self.place(column).and_then(|place| cells.get(place)).map_or("", String::as_str))
     }
 
+    /// The text of a cell without the spaces around it, or `otherwise` where it is empty or its column is absent.
+    pub fn word<'a>(&'a self, row: usize, column: &str, otherwise: &'a str) -> Result<&'a str, String> {
+        let word = self.cell(row, column)?.trim();
+        Ok(if word.is_empty() { otherwise } else { word })
+    }
+
     /// A cell as one number; the error names the column.
     pub fn number(&self, row: usize, column: &str) -> Result<f64, String> {
         number::parse(self.cell(row, column)?).map_err(|problem| format!("{column} {problem}"))
