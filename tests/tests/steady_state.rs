@@ -72,7 +72,8 @@ fn a_frame_allocates_nothing_after_warm_up() {
     let plan = compile(graph, &context.graph_limits());
     let mut execution = Execution::prepare(context, plan).unwrap();
     let imports = Imports::new();
-    let mut timing = Timing::new(context, PASSES as u32, 0, 4).unwrap();
+    let timing = Timing::new(context, PASSES as u32, 0, 4).unwrap();
+    let mut timing = timing.with_pipeline_statistics().unwrap();
     let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
     let (warm_up, measured) = (10, 50);
     let mut allocations = [0, 0];
