@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, compare, devices};
+use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
 use crate::commands::{eval, explain, plan, render, report, show, stability};
 
@@ -56,6 +56,7 @@ pub struct Global {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Devices(devices::Arguments),
+    Requirements(requirements::Arguments),
     Bake(bake::Arguments),
     #[cfg(feature = "relight")]
     Render(render::Arguments),

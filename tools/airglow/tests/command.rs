@@ -262,3 +262,35 @@ fn one_extreme_input_runs_by_its_name() {
     assert!(case("a peak rises").contains("worst  at "));
     fails(here, &["stability", "relight", "--case", "nothing"], 2, "nothing has this name");
 }
+
+#[test]
+fn what_if_tells_what_a_change_would_do() {
+    let root = root();
+    let scene = "assets/scenes/spot.toml";
+    let what_if = |change| succeeds(&root, &["plan", scene, "--what-if", change]);
+    assert_eq!(what_if("order=4"), "what if order=4\nno difference\n");
+    let without = what_if("environment=none");
+    for line in ["- pass relight colours", "+ left out relight", "~ pipelines: 4 -> 0 (-4)"] {
+        assert!(without.contains(line), "`{line}` is not in: {without}");
+    }
+    let bytes = what_if("storage=f16");
+    assert!(bytes.contains("vectors of mesh 0: 208896 B -> 104448 B"), "{bytes}");
+    let json = succeeds(&root, &["plan", scene, "--what-if", "views=2", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["difference"]["passes_added"][0], "scene draw#2", "{json}");
+    fails(&root, &["plan", scene, "--what-if", "colour=red"], 2, "environment=none or a file");
+    fails(&root, &["plan", scene, "--what-if", "order=9"], 2, "1 to 6");
+}
+
+#[test]
+fn requirements_are_told_without_a_device() {
+    let root = root();
+    let text = succeeds(&root, &["requirements"]);
+    assert!(text.contains("feature synchronization2: required"), "{text}");
+    let engine = succeeds(&root, &["requirements", "engine", "--json"]);
+    let all = succeeds(&root, &["requirements", "--json"]);
+    let [engine, all]: [serde_json::Value; 2] =
+        [engine, all].map(|json| serde_json::from_str(&json).unwrap());
+    assert_eq!(engine["formats"].as_array().unwrap().len(), 0);
+    assert!(!all["formats"].as_array().unwrap().is_empty(), "{all}");
+}

@@ -13,11 +13,14 @@ pub mod plan;
 pub mod render;
 #[cfg(feature = "relight")]
 pub mod report;
+pub mod requirements;
 pub mod scene;
 #[cfg(feature = "relight")]
 pub mod show;
 #[cfg(feature = "relight")]
 pub mod stability;
+#[cfg(feature = "relight")]
+pub mod what_if;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Outcome;
@@ -28,6 +31,7 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
     let global = &cli.global;
     match cli.command {
         Command::Devices(arguments) => devices::run(&arguments, output),
+        Command::Requirements(arguments) => requirements::run(&arguments, output),
         Command::Bake(arguments) => bake::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Render(arguments) => render::run(&arguments, global, output),

@@ -7,6 +7,7 @@ use glam::DQuat;
 use crate::cli::Global;
 use crate::commands::render::PassName;
 use crate::commands::scene::SceneOptions;
+use crate::commands::what_if;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
@@ -26,6 +27,7 @@ const MEASURED_FRAMES: usize = WARM_UP + 9;
   airglow plan assets/scenes/spot.toml --check             have its barriers replayed
   airglow plan assets/scenes/spot.toml --measure           with time and counts of each pass
   airglow plan assets/scenes/spot.toml --without relight --measure      what it would take
+  airglow plan assets/scenes/spot.toml --what-if order=6 --what-if storage=f16      what that would change
   airglow plan assets/mesh/spot.glb          no environment: relighting is left out, and the plan says so")]
 pub struct Arguments {
     #[command(flatten)]
@@ -43,6 +45,10 @@ pub struct Arguments {
     /// Replay every barrier over every subresource by a checker that shares no code with the compiler.
     #[arg(long)]
     check: bool,
+    /// Print only what a change would add or take away: passes, bytes, barriers, pipelines. May be given several times;
+    /// an unknown key lists those there are.
+    #[arg(long, value_name = "KEY=VALUE", conflicts_with_all = ["form", "measure", "check"])]
+    what_if: Vec<String>,
     /// Views of the frame.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     views: u32,
@@ -63,20 +69,13 @@ pub enum Form {
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
     let (without, cache) = (arguments.without == Some(PassName::Relight), &arguments.scene.cache);
+    let settings = frame(arguments);
+    if !arguments.what_if.is_empty() {
+        return what_if::run(&scene, &settings, &arguments.what_if, global, output);
+    }
     let source = Source::of_scene(&scene, without, cache, output)?;
     let compared = arguments.measure && without;
     let whole = compared.then(|| Source::of_scene(&scene, false, cache, output)).transpose()?;
-    let settings = Settings {
-        size: [960, 540],
-        views: arguments.views,
-        samples: 1,
-        exposure: 1.0,
-        turn: DQuat::IDENTITY,
-        spin: 0.0,
-        without_relight: without,
-        without_fog: arguments.without == Some(PassName::Fog),
-        window: None,
-    };
     let requirements = whole.as_ref().unwrap_or(&source).requirements(&scene);
     let text = device::with(global, &requirements, |device| {
         let seconds = match &whole {
@@ -105,6 +104,21 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         })
     })?;
     print(&text)
+}
+
+/// The frame asked for.
+fn frame(arguments: &Arguments) -> Settings {
+    Settings {
+        size: [960, 540],
+        views: arguments.views,
+        samples: 1,
+        exposure: 1.0,
+        turn: DQuat::IDENTITY,
+        spin: 0.0,
+        without_relight: arguments.without == Some(PassName::Relight),
+        without_fog: arguments.without == Some(PassName::Fog),
+        window: None,
+    }
 }
 
 /// The passes measured, as lines below those of the plan.

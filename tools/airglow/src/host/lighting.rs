@@ -66,6 +66,15 @@ impl Source {
         }
     }
 
+    /// The same without a bake, for plans alone.
+    pub fn unbaked(scene: &Scene, without_relight: bool) -> Outcome<Self> {
+        match (&scene.environment, without_relight) {
+            (_, true) => Ok(Self::Even(Reason::Asked)),
+            (None, false) => Ok(Self::Even(Reason::NoEnvironment)),
+            (Some(_), false) => transfer::unbaked(scene).map(Self::Relight),
+        }
+    }
+
     /// What the device must offer.
     pub fn requirements(&self, scene: &Scene) -> Requirements {
         let requirements = match self {

@@ -62,6 +62,21 @@ struct Job<'a> {
     occluders: Vec<Occluder<'a>>,
 }
 
+impl Job<'_> {
+    /// Of a closed form, before any ray.
+    fn account(&self) -> Account {
+        Account {
+            name: self.name.clone(),
+            vertices: self.mesh.positions.len(),
+            occluders: self.occluders.iter().map(|occluder| occluder.indices.len() / 3).sum(),
+            source: "closed form".to_owned(),
+            rays: 0,
+            rays_per_second: 0.0,
+            file: None,
+        }
+    }
+}
+
 /// Bakes what `quality` asks for, or reads it from `cache`.
 pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output) -> Outcome<SceneTransfer> {
     let holes = holes::of_scene(scene);
@@ -71,6 +86,21 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
         let (transfer, account) = bake(job, quality, cache, output)?;
         result.transfers.push(transfer);
         result.accounts.push(account);
+    }
+    Ok(result)
+}
+
+/// Transfer of the shapes that [`of_scene`] would give, without a ray: as if nothing cast a shadow. For plans, which do
+/// not depend on what is in it.
+pub fn unbaked(scene: &Scene) -> Outcome<SceneTransfer> {
+    let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
+    let (jobs, instances) = jobs(scene, scene.quality.shadow, &none);
+    let order = scene.quality.order as usize;
+    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new() };
+    for job in &jobs {
+        let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
+        result.transfers.push(baked.transfer);
+        result.accounts.push(job.account());
     }
     Ok(result)
 }
@@ -173,16 +203,7 @@ fn world_job<'a>(
 }
 
 fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outcome<(Transfer, Account)> {
-    let vertices = job.mesh.positions.len();
-    let mut account = Account {
-        name: job.name.clone(),
-        vertices,
-        occluders: job.occluders.iter().map(|occluder| occluder.indices.len() / 3).sum(),
-        source: "closed form".to_owned(),
-        rays: 0,
-        rays_per_second: 0.0,
-        file: None,
-    };
+    let mut account = job.account();
     let order = quality.order as usize;
     if quality.shadow == Shadow::Unshadowed {
         let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
@@ -192,7 +213,7 @@ fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outc
     let key = CacheKey::new(&job.mesh, job.transform, &job.occluders, &settings).to_hex();
     std::fs::create_dir_all(cache).map_err(|error| Failure::file(cache, "making the cache folder", error))?;
     let file = cache.join(format!("{}-{}.safetensors", file_name(&job.name), &key[..16]));
-    let bar = output.progress(&job.name, vertices as u64, "vertices");
+    let bar = output.progress(&job.name, account.vertices as u64, "vertices");
     let mut progress = |report: &Report| {
         bar.set_position(report.vertices as u64);
         ControlFlow::Continue(())
