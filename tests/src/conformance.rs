@@ -11,7 +11,7 @@ use airglow_graph as graph;
 use airglow_graph::{Access, BufferDesc, Graph, Handle, ImageDesc, State};
 use std::error::Error;
 
-pub use host::Host;
+pub use host::{Host, HostDevice};
 
 /// What a room says when it refuses.
 pub type Refusal = Box<dyn Error>;
@@ -110,6 +110,18 @@ pub type Outputs = Vec<Vec<u8>>;
 /// says anything.
 pub fn conform<R: Room>(
     make: impl Fn(&Context) -> R,
+    requirements: &Requirements,
+    options: &Options,
+) -> Outputs {
+    conform_adopting(|context, _| make(context), requirements, options)
+}
+
+/// The same for a room that adopts the host's device on a road of its own, such as a library for another language.
+///
+/// # Panics
+/// As [`conform`].
+pub fn conform_adopting<R: Room>(
+    make: impl Fn(&Context, &HostDevice) -> R,
     requirements: &Requirements,
     options: &Options,
 ) -> Outputs {

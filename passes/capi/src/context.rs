@@ -10,7 +10,8 @@ use serde_json::json;
 
 use crate::allocator::{AirglowAllocator, HostAllocator};
 use crate::input::{Versioned, array, exclusive, shared, store, string, take, versioned};
-use crate::requirements::{AirglowFunction, AirglowRequirements, features_named, get_instance_proc_addr};
+use crate::physical::{AirglowFunction, features_named, get_instance_proc_addr};
+use crate::requirements::AirglowRequirements;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 use crate::text::{AirglowText, write_text};
 

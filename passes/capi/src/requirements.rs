@@ -1,14 +1,14 @@
 //! What the library asks of a device, before there is one: as data, as JSON, and as a patcher of the host's own chain.
 
-use std::ffi::{CString, c_char, c_void};
+use std::ffi::{CString, c_void};
 
-use airglow_gpu::ash::{self, vk, vk::Handle};
-use airglow_gpu::{Feature, FeatureSet, FeatureStorage, Offer, Requirements, patch_features};
+use airglow_gpu::{FeatureSet, FeatureStorage, GpuError, Requirements, patch_features};
 use serde_json::json;
 
-use crate::input::Versioned;
-use crate::input::{array, exclusive, shared, store, string, take, versioned};
-use crate::status::{AirglowError, AirglowStatus, Failure, edge};
+use crate::input::{exclusive, shared, store, take, versioned};
+use crate::needs::{AirglowNeed, Row, rows};
+use crate::physical::{AirglowPhysicalDevice, Supported};
+use crate::status::{AirglowError, AirglowStatus, edge};
 use crate::text::{AirglowText, write_array, write_text};
 
 /// What passes ask of a device. Made empty, which is what the library itself needs; each pass adds its own
@@ -19,71 +19,6 @@ pub struct AirglowRequirements {
     texts: Vec<CString>,
     /// The structures that a host's chain was patched with.
     storage: Box<FeatureStorage>,
-}
-
-/// What an `AirglowNeed` is about.
-#[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AirglowNeedKind {
-    /// The API version of instance and device: `value` as `VK_MAKE_API_VERSION` packs it.
-    ApiVersion = 0,
-    /// An extension of the instance.
-    InstanceExtension = 1,
-    /// An extension of the device.
-    DeviceExtension = 2,
-    /// An extension of a device below Vulkan 1.3, where it stands for a feature that is core later.
-    DeviceExtensionBelow13 = 3,
-    /// A feature, by its field's name in the Vulkan specification.
-    Feature = 4,
-    /// A limit by its field's name; `value` is the least it may be, in its own unit.
-    Limit = 5,
-    /// A format: `value` is the `VkFormat`, `flags` the `VkFormatFeatureFlags` asked of images with optimal tiling, and
-    /// of buffers for vertex input.
-    Format = 6,
-    /// The queue family that commands are submitted to: `flags` are its `VkQueueFlags`.
-    Queue = 7,
-}
-
-/// One thing asked of a device. Texts live until the requirements change or are dropped.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct AirglowNeed {
-    /// An `AirglowNeedKind`.
-    pub kind: u32,
-    /// 1: without it nothing runs. 0: it only buys something.
-    pub required: u32,
-    /// See `AirglowNeedKind`.
-    pub value: u64,
-    /// See `AirglowNeedKind`.
-    pub flags: u64,
-    /// The name of extension, feature or limit; empty for others.
-    pub name: *const c_char,
-    /// What it is for or what it buys.
-    pub why: *const c_char,
-}
-
-/// A Vulkan function of whatever type; cast `vkGetInstanceProcAddr` to it.
-pub type AirglowFunction = Option<unsafe extern "system" fn()>;
-
-/// A physical device, to be asked what it supports before there is a device.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct AirglowPhysicalDevice {
-    /// `sizeof(AirglowPhysicalDevice)`.
-    pub struct_size: u32,
-    /// The queue family that commands will be submitted to.
-    pub queue_family: u32,
-    /// `vkGetInstanceProcAddr`, the loader's or the host's own in front of it.
-    pub get_instance_proc_addr: AirglowFunction,
-    /// The `VkInstance`.
-    pub instance: u64,
-    /// The `VkPhysicalDevice`; Vulkan 1.3 or newer.
-    pub physical_device: u64,
-}
-
-// SAFETY: `#[repr(C)]`, its size first, integers and an optional function; fields of 8 bytes are at multiples of 8.
-unsafe impl Versioned for AirglowPhysicalDevice {
-    const OLDEST: usize = size_of::<Self>();
 }
 
 /// Makes requirements: what the library itself needs. Drop them with `airglow_requirements_drop`.
@@ -169,7 +104,7 @@ pub unsafe extern "C" fn airglow_requirements_check(
             if !missing.is_null() {
                 write_text(missing, &json!(texts).to_string())?;
             }
-            if lacking.is_empty() { Ok(()) } else { Err(airglow_gpu::GpuError::Missing(lacking).into()) }
+            if lacking.is_empty() { Ok(()) } else { Err(GpuError::Missing(lacking).into()) }
         })
     }
 }
@@ -236,159 +171,5 @@ impl AirglowRequirements {
             why: texts[1].as_ptr(),
         };
         rows.iter().zip(self.texts.chunks_exact(2)).map(need).collect()
-    }
-}
-
-/// An [`AirglowNeed`] before its texts have a home.
-struct Row {
-    kind: AirglowNeedKind,
-    required: bool,
-    value: u64,
-    flags: u64,
-    name: &'static str,
-    why: &'static str,
-}
-
-fn rows(asked: &Requirements) -> Vec<Row> {
-    use AirglowNeedKind as Kind;
-    let row = |kind, name, why| Row { kind, required: true, value: 0, flags: 0, name, why };
-    let mut rows = vec![
-        Row { value: asked.api_version.into(), ..row(Kind::ApiVersion, "", "the functions called") },
-        Row { flags: asked.queue.as_raw().into(), ..row(Kind::Queue, "", "the commands recorded") },
-    ];
-    rows.extend(
-        asked.instance_extensions.iter().map(|need| Row {
-            required: need.required,
-            ..row(Kind::InstanceExtension, need.name, need.buys)
-        }),
-    );
-    rows.extend(asked.extensions.iter().map(|name| row(Kind::DeviceExtension, name, "")));
-    rows.extend(asked.features.iter().filter_map(|need| {
-        let name = need.feature.extension_before_1_3()?;
-        Some(Row { required: need.required, ..row(Kind::DeviceExtensionBelow13, name, need.buys) })
-    }));
-    rows.extend(
-        asked.features.iter().map(|need| Row {
-            required: need.required,
-            ..row(Kind::Feature, need.feature.name(), need.buys)
-        }),
-    );
-    rows.extend(
-        asked
-            .limits
-            .iter()
-            .map(|need| Row { value: need.at_least, ..row(Kind::Limit, need.limit.name(), need.why) }),
-    );
-    rows.extend(asked.formats.iter().map(|need| Row {
-        value: need.format.as_raw() as u64,
-        flags: need.usage.as_raw().into(),
-        ..row(Kind::Format, "", need.why)
-    }));
-    rows
-}
-
-/// The features that the names of an array name; names unknown here are of no use here.
-///
-/// # Safety
-/// As [`array`] and [`string`].
-pub(crate) unsafe fn features_named(
-    names: *const *const c_char,
-    count: usize,
-) -> Result<FeatureSet, Failure> {
-    let mut set = FeatureSet::default();
-    // SAFETY: the caller's promise is ours.
-    unsafe {
-        for &name in array(names, count, "feature_names")? {
-            let name = string(name, "a feature name", "")?;
-            set = Feature::ALL
-                .iter()
-                .filter(|known| known.name() == name)
-                .fold(set, |set, &known| set.with(known));
-        }
-    }
-    Ok(set)
-}
-
-/// `function` as `vkGetInstanceProcAddr`.
-///
-/// # Safety
-/// It is null or that function.
-pub(crate) unsafe fn get_instance_proc_addr(
-    function: AirglowFunction,
-) -> Result<vk::PFN_vkGetInstanceProcAddr, Failure> {
-    let function = function.ok_or_else(|| Failure::argument("get_instance_proc_addr", "it is null"))?;
-    // SAFETY: the caller's promise is ours; both are function pointers of one calling convention.
-    Ok(unsafe { std::mem::transmute::<unsafe extern "system" fn(), vk::PFN_vkGetInstanceProcAddr>(function) })
-}
-
-/// What a physical device supports.
-struct Supported {
-    instance: ash::Instance,
-    device: vk::PhysicalDevice,
-    queue_family: u32,
-    features: FeatureSet,
-}
-
-impl Supported {
-    /// # Safety
-    /// The handles are alive and belong together.
-    unsafe fn ask(device: &AirglowPhysicalDevice) -> Result<Self, Failure> {
-        if device.instance == 0 || device.physical_device == 0 {
-            return Err(Failure::argument("device", "instance or physical_device is null"));
-        }
-        let (raw, physical) =
-            (vk::Instance::from_raw(device.instance), vk::PhysicalDevice::from_raw(device.physical_device));
-        // SAFETY: the caller vouches for function and handles; what is called is looked up first, because ash puts a
-        // function that panics in the place of a null one.
-        unsafe {
-            let find = get_instance_proc_addr(device.get_instance_proc_addr)?;
-            for name in [
-                c"vkEnumerateDeviceExtensionProperties",
-                c"vkGetPhysicalDeviceFeatures2",
-                c"vkGetPhysicalDeviceFormatProperties",
-                c"vkGetPhysicalDeviceProperties",
-                c"vkGetPhysicalDeviceQueueFamilyProperties",
-            ] {
-                if find(raw, name.as_ptr()).is_none() {
-                    let name = name.to_string_lossy();
-                    return Err(Failure::new(
-                        AirglowStatus::Missing,
-                        format!(
-                            "get_instance_proc_addr returned null for {name}; make the instance for Vulkan 1.3"
-                        ),
-                    ));
-                }
-            }
-            let instance =
-                ash::Instance::load_with(|name| std::mem::transmute(find(raw, name.as_ptr())), raw);
-            if instance.get_physical_device_properties(physical).api_version < vk::API_VERSION_1_3 {
-                let problem = "it is below Vulkan 1.3, of which its features are asked; switch the required ones on, \
-                               with the extensions for them, and let adopt say what is missing";
-                return Err(Failure::argument("device", problem));
-            }
-            let features = FeatureSet::supported(&instance, physical);
-            Ok(Self { instance, device: physical, queue_family: device.queue_family, features })
-        }
-    }
-
-    fn offer(&self, asked: &Requirements) -> Result<Offer, Failure> {
-        // SAFETY: `ask` was promised that the handles are alive; its functions were looked up.
-        let (mut offer, extensions) = unsafe {
-            let offer = Offer::read(&self.instance, self.device, self.queue_family, asked);
-            (offer, self.instance.enumerate_device_extension_properties(self.device))
-        };
-        let extensions = extensions.map_err(|result| Failure {
-            vulkan_result: result.as_raw(),
-            ..Failure::new(
-                AirglowStatus::Vulkan,
-                format!("vkEnumerateDeviceExtensionProperties returned {result:?}"),
-            )
-        })?;
-        let name = |properties: &vk::ExtensionProperties| {
-            Some(properties.extension_name_as_c_str().ok()?.to_string_lossy().into_owned())
-        };
-        offer.extensions = extensions.iter().filter_map(name).collect();
-        offer.features = self.features;
-        Ok(offer)
     }
 }

@@ -21,6 +21,29 @@ pub struct Host {
     requirements: Requirements,
 }
 
+/// A host's device as it states it, for rooms that adopt it on a road of their own.
+#[derive(Clone, Copy)]
+pub struct HostDevice {
+    /// The loader's function.
+    pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    /// The device's function, with the kit listening behind it.
+    pub get_device_proc_addr: vk::PFN_vkGetDeviceProcAddr,
+    /// The instance.
+    pub instance: vk::Instance,
+    /// API version of the instance.
+    pub api_version: u32,
+    /// The physical device.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device.
+    pub device: vk::Device,
+    /// Family of the queue that commands are submitted to.
+    pub queue_family: u32,
+    /// Features enabled.
+    pub features: FeatureSet,
+    /// Extensions enabled.
+    pub extensions: &'static [&'static str],
+}
+
 /// A resource that the host made, with its memory.
 struct Made {
     given: Given,
@@ -79,15 +102,15 @@ impl Host {
     /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
     pub(super) fn run<R: Room>(
         &self,
-        make: impl Fn(&Context) -> R,
+        make: impl Fn(&Context, &HostDevice) -> R,
         options: &Options,
         road: Road,
     ) -> (Outputs, Vec<Call>) {
         let handle = self.device.handle();
         let shim = Shim::watching(&self.open, handle);
-        let info = AdoptInfo {
+        let host = HostDevice {
             get_instance_proc_addr: self.open.entry().static_fn().get_instance_proc_addr,
-            get_device_proc_addr: Some(shim.get_device_proc_addr()),
+            get_device_proc_addr: shim.get_device_proc_addr(),
             instance: self.open.instance().handle(),
             api_version: vk::API_VERSION_1_3,
             physical_device: self.open.physical_device(),
@@ -95,6 +118,17 @@ impl Host {
             queue_family: self.open.queue_family(),
             features: self.features,
             extensions: &["VK_EXT_debug_utils"],
+        };
+        let info = AdoptInfo {
+            get_instance_proc_addr: host.get_instance_proc_addr,
+            get_device_proc_addr: Some(host.get_device_proc_addr),
+            instance: host.instance,
+            api_version: host.api_version,
+            physical_device: host.physical_device,
+            device: host.device,
+            queue_family: host.queue_family,
+            features: host.features,
+            extensions: host.extensions,
             requirements: &self.requirements,
             allocator: None,
             pipeline_cache: vk::PipelineCache::null(),
@@ -103,7 +137,7 @@ impl Host {
         };
         // SAFETY: handles of this host; all that is made from the context is dropped below, after waiting.
         let context = unsafe { Context::adopt(info) }.unwrap_or_else(|error| panic!("{error}"));
-        let mut room = make(&context);
+        let mut room = make(&context, &host);
         let resources = room.resources();
         let made: Vec<_> = resources.iter().map(|resource| self.make(&context, resource)).collect();
         let given: Vec<_> = made.iter().map(|made| made.given.clone()).collect();
