@@ -1,0 +1,48 @@
+//! What this room refuses, and the mend.
+
+use airglow_math::MathError;
+
+/// Why an input was refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NormalsError {
+    /// A map whose size is none, or does not fit its texels.
+    #[error("normal map of {width} x {height} with {texels} texels: {mend}")]
+    Size {
+        /// Its width in texels.
+        width: usize,
+        /// Its height in texels.
+        height: usize,
+        /// How many texels came.
+        texels: usize,
+        /// What to change.
+        mend: &'static str,
+    },
+    /// A texel that the map does not have.
+    #[error("normal map: level {level} has no texel ({x}, {y}): it is {width} x {height}")]
+    Texel {
+        /// The level.
+        level: usize,
+        /// The column.
+        x: usize,
+        /// The row.
+        y: usize,
+        /// Texels of a row at that level.
+        width: usize,
+        /// Rows at that level.
+        height: usize,
+    },
+    /// A number out of its range.
+    #[error("normals: {what} is {value}: give {range}")]
+    Range {
+        /// What the number is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is accepted, in words.
+        range: &'static str,
+    },
+    /// A refusal of the mathematics.
+    #[error("normals: {0}")]
+    Math(#[from] MathError),
+}

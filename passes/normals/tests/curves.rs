@@ -1,0 +1,136 @@
+//! Error of what may be kept of a distribution, over random texels, levels, lights and views.
+
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
+mod common;
+
+use std::path::Path;
+
+use airglow_math::statistics::relative_l2;
+use airglow_normals::rivals::{self, Lean};
+use airglow_normals::{Brdf, Directions, FitSettings, Harmonics, Mixture, NormalMap, Sample};
+use airglow_normals::{fit, reference, shade};
+use airglow_scene::image_io::read_image;
+use airglow_scene::srgb_encode;
+use airglow_tests::data;
+use common::{Random, directions};
+
+const BRDFS: [Brdf; 7] = [
+    Brdf::Lambert,
+    Brdf::BlinnPhong { exponent: 10.0 },
+    Brdf::BlinnPhong { exponent: 50.0 },
+    Brdf::BlinnPhong { exponent: 200.0 },
+    Brdf::Ggx { alpha: 0.1 },
+    Brdf::Ggx { alpha: 0.3 },
+    Brdf::Ggx { alpha: 0.5 },
+];
+
+const METHODS: [&str; 8] = ["mip", "length", "toksvig", "lean", "sh:3", "sh:5", "vmf:1", "vmf:4"];
+
+/// How far from the mirror direction half of the rows look: about the width of the reflection.
+fn spread(brdf: Brdf) -> f64 {
+    match brdf {
+        Brdf::Lambert => 0.5,
+        Brdf::BlinnPhong { exponent } => 1.0 / exponent.sqrt(),
+        Brdf::Ggx { alpha } => alpha / 2_f64.sqrt(),
+    }
+}
+
+/// A footprint and what is kept of it.
+struct Kept {
+    footprint: Vec<Sample>,
+    lean: Lean,
+    harmonics: [Harmonics; 2],
+    mixtures: [Mixture; 2],
+}
+
+impl Kept {
+    fn new(footprint: Vec<Sample>) -> Self {
+        let lobes = |lobes| fit(&footprint, &FitSettings { lobes, ..Default::default() }).unwrap();
+        let harmonics = |order| Harmonics::new(order, &footprint).unwrap();
+        let (mixtures, harmonics) = ([lobes(1), lobes(4)], [harmonics(3), harmonics(5)]);
+        Self { lean: Lean::new(&footprint), harmonics, mixtures, footprint }
+    }
+
+    fn radiances(&self, brdf: Brdf, directions: Directions) -> [f64; METHODS.len()] {
+        let mean = rivals::mean(&self.footprint);
+        [
+            rivals::mip(mean, true, brdf, directions),
+            rivals::mip(mean, false, brdf, directions),
+            rivals::toksvig(mean, brdf, directions),
+            self.lean.radiance(brdf, directions),
+            self.harmonics[0].radiance(brdf, directions).unwrap(),
+            self.harmonics[1].radiance(brdf, directions).unwrap(),
+            shade::radiance(&self.mixtures[0], brdf, directions),
+            shade::radiance(&self.mixtures[1], brdf, directions),
+        ]
+    }
+}
+
+/// Relative L2 errors of the methods, a row for each BRDF, printed under `name`.
+fn errors(name: &str, map: &NormalMap, texels: usize, levels: [usize; 2]) -> Vec<[f64; METHODS.len()]> {
+    let mut random = Random(11);
+    let mut values = vec![[const { Vec::new() }; METHODS.len()]; BRDFS.len()];
+    let mut truths = vec![Vec::new(); BRDFS.len()];
+    for texel in 0..texels {
+        let level = levels[0] + texel % (levels[1] - levels[0] + 1);
+        let [width, height] = map.size(level);
+        let footprint = map.footprint(level, random.below(width), random.below(height)).unwrap();
+        let kept = Kept::new(footprint);
+        for (i, &brdf) in BRDFS.iter().enumerate() {
+            for row in 0..20 {
+                let directions = directions(row, &kept.footprint, spread(brdf), &mut random);
+                truths[i].push(reference::radiance(&kept.footprint, brdf, directions));
+                for (values, value) in values[i].iter_mut().zip(kept.radiances(brdf, directions)) {
+                    values.push(value);
+                }
+            }
+        }
+    }
+    println!("{name}: {METHODS:?}");
+    let row = |(i, values): (usize, &[Vec<f64>; METHODS.len()])| {
+        let errors = values.each_ref().map(|values| relative_l2(values, &truths[i]).unwrap());
+        println!("  {:?}: {}", BRDFS[i], errors.map(|e| format!("{:.2}%", 100.0 * e)).join("  "));
+        errors
+    };
+    values.iter().enumerate().map(row).collect()
+}
+
+fn method(name: &str) -> usize {
+    METHODS.iter().position(|method| *method == name).unwrap()
+}
+
+#[test]
+fn four_lobes_on_maps_of_several_modes() {
+    for (name, map) in [("groove", common::groove(256)), ("weave", common::weave(256))] {
+        for (brdf, errors) in BRDFS.iter().zip(errors(name, &map, 28, [2, 6])) {
+            let ours = errors[method("vmf:4")];
+            let rival = errors[method("toksvig")].min(errors[method("lean")]);
+            assert!(ours <= 0.05 && ours <= rival / 5.0, "{name}, {brdf:?}: {ours} against {rival}");
+        }
+    }
+}
+
+#[test]
+fn four_lobes_on_a_map_of_one_mode() {
+    for (brdf, errors) in BRDFS.iter().zip(errors("grain", &common::grain(256), 28, [2, 6])) {
+        let (ours, lean) = (errors[method("vmf:4")], errors[method("lean")]);
+        assert!(ours <= lean, "{brdf:?}: {ours} against {lean}");
+    }
+}
+
+#[test]
+fn measured_maps() {
+    for name in ["rock_1024", "leather_1024", "flakes_1024", "ripples_1024"] {
+        let Some(file) = data::find(&format!("normalmap/{name}.png")) else { return };
+        let lambert = errors(name, &read(&file), 28, [2, 7])[0];
+        assert!(lambert[method("vmf:4")] <= 0.01, "{name}: {lambert:?}");
+    }
+}
+
+/// A PNG's components as stored: it was decoded from sRGB as a picture would be.
+fn read(file: &Path) -> NormalMap {
+    let image = read_image(file).unwrap();
+    let vectors: Vec<_> = image.pixels.iter().map(|rgb| rgb.map(|c| 2.0 * srgb_encode(c) - 1.0)).collect();
+    NormalMap::from_vectors(image.width, image.height, &vectors).unwrap()
+}
