@@ -1,0 +1,26 @@
+//! Incident radiance of emitters that are near: light vectors that differ from vertex to vertex.
+//!
+//! Yu-Hsian Sun, "Effective Sampling and Reconstruction of Incident Radiance for Spherical Harmonic Lighting" (2005).
+#![forbid(unsafe_code)]
+
+mod emitter;
+mod error;
+mod hierarchy;
+mod incident;
+mod octree;
+mod oracle;
+mod reconstruct;
+pub mod reference;
+mod refine;
+pub mod rivals;
+#[cfg(test)]
+mod testing;
+
+pub use emitter::{Sphere, Triangle, check};
+pub use error::RadianceError;
+pub use hierarchy::{Hierarchy, MAX_VERTICES, Node};
+pub use incident::Incident;
+pub use octree::{LEVELS, Octree};
+pub use oracle::Oracle;
+pub use reconstruct::{OVERLAP, Reconstruction, Weights};
+pub use refine::{Refined, Sample, Sampler, Settings, refine};

@@ -1,0 +1,42 @@
+//! The oracle: how wrong a node's vertices come out if one sample serves them all, guessed from that sample.
+//!
+//! Sun 2005, section 3.3.2 and eq. 3.3; section 5.2.3 asks for the sharper one that knows the transfer vectors.
+
+use crate::{Incident, Node};
+
+/// How an error is estimated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Oracle {
+    /// `r |l| / H^2`, eq. 3.3 as it is printed: r the radius of the node's box, l its light vector, H the harmonic mean
+    /// of the distances of emitters. Radiance a metre, so its bound depends on the scene's unit.
+    Printed,
+    /// `r |l| (r / H)`, eq. 3.3 as its text argues: brightness and number of vertices times variation. Radiance times
+    /// metres.
+    Argued,
+    /// `|t| |S| s sqrt(n / N)`: the root mean square over the whole receiver of the colours' change, to first order. t is
+    /// the root mean square of the norms of the node's transfer vectors, S the slope of the sample, s the root mean
+    /// square of the distances of its n out of N vertices from the sample. Radiance.
+    #[default]
+    Transfer,
+}
+
+impl Oracle {
+    /// The estimate for a `node` of a receiver of `vertices`, given light sampled in it or near it. Zero where no
+    /// vertex reflects light, where none arrives, and where all vertices coincide.
+    #[must_use]
+    pub fn estimate(self, node: &Node, vertices: usize, light: &Incident) -> f64 {
+        let radius = f64::from(node.radius);
+        if node.transfer == 0.0 || radius == 0.0 {
+            return 0.0;
+        }
+        match self {
+            Self::Printed => radius * light.norm() / light.distance().powi(2),
+            Self::Argued => radius * light.norm() * (radius / light.distance()),
+            Self::Transfer => {
+                let share = f64::from(node.count) / vertices.max(1) as f64;
+                let slope = light.slope.length() / 3.0_f64.sqrt();
+                f64::from(node.transfer_rms) * slope * f64::from(node.spread) * share.sqrt()
+            }
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Light vectors of vertices from the samples whose domains hold them.
+//!
+//! Sun 2005, section 3.3.5 and eq. 2.12 and 2.13.
+
+use glam::DVec3;
+
+use crate::octree::Octree;
+use crate::{RadianceError, Refined};
+
+/// How samples are weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Weights {
+    /// `1 / d` of every sample whose domain, of the node's own reach, holds the vertex; split nodes count, too. The
+    /// method of the thesis. Light jumps where a domain ends.
+    Inverse,
+    /// `((R - d) / (R d))^2` of the nodes not split, in domains of [`OVERLAP`] times the reach: the light ends where the
+    /// domain does (Franke and Nielson, "Smooth Interpolation of Large Sets of Scattered Data", 1980).
+    #[default]
+    Compact,
+}
+
+/// By how much domains of [`Weights::Compact`] exceed the reach of their nodes. More than 1, so that no vertex has only
+/// weights of zero.
+pub const OVERLAP: f64 = 1.5;
+
+/// Samples, ready to be interpolated.
+#[derive(Debug)]
+pub struct Reconstruction<'a> {
+    refined: &'a Refined,
+    weights: Weights,
+    /// Number, centre and radius of each sample that is used.
+    used: Vec<(usize, DVec3, f64)>,
+    octree: Octree,
+    /// Distances below it count as it.
+    least: f64,
+}
+
+impl<'a> Reconstruction<'a> {
+    /// Puts the samples into an octree.
+    #[must_use]
+    pub fn new(refined: &'a Refined, weights: Weights) -> Self {
+        let overlap = if weights == Weights::Compact { OVERLAP } else { 1.0 };
+        let samples = refined.samples.iter().enumerate();
+        let used: Vec<_> = samples
+            .filter(|(_, sample)| weights == Weights::Inverse || !sample.split)
+            .map(|(number, sample)| (number, sample.point, overlap * sample.reach))
+            .collect();
+        let spheres: Vec<_> = used.iter().map(|(_, centre, radius)| (*centre, *radius)).collect();
+        let largest = used.iter().fold(0.0, |largest: f64, (_, _, radius)| largest.max(*radius));
+        let least = (1e-6 * largest).max(f64::MIN_POSITIVE.sqrt());
+        Self { refined, weights, octree: Octree::new(&spheres), used, least }
+    }
+
+    /// The light vector at `point` into `out`, and the number of samples it came from; with 0, `out` is black: no domain
+    /// holds the point, which no vertex meets that reflects light.
+    ///
+    /// # Errors
+    /// [`RadianceError::Length`] unless `out` is as long as the samples' light vectors.
+    pub fn light(&self, point: DVec3, out: &mut [DVec3]) -> Result<usize, RadianceError> {
+        if let Some(sample) = self.refined.samples.first() {
+            let (expected, actual) = (sample.light.coefficients.len(), out.len());
+            if expected != actual {
+                return Err(RadianceError::Length { what: "the light vector", expected, actual });
+            }
+        }
+        out.fill(DVec3::ZERO);
+        let (mut total, mut count) = (0.0, 0);
+        self.octree.near(point, |place| {
+            let (number, centre, radius) = self.used[place];
+            let weight = self.weight(centre.distance(point), radius);
+            if weight > 0.0 {
+                (total, count) = (total + weight, count + 1);
+                let light = &self.refined.samples[number].light.coefficients;
+                out.iter_mut().zip(light).for_each(|(sum, l)| *sum += weight * *l);
+            }
+        });
+        if count > 0 {
+            out.iter_mut().for_each(|sum| *sum /= total);
+        }
+        Ok(count)
+    }
+
+    fn weight(&self, distance: f64, radius: f64) -> f64 {
+        let near = distance.max(self.least);
+        match self.weights {
+            _ if distance > radius => 0.0,
+            Weights::Inverse => 1.0 / near,
+            // A domain of one point: the vertex itself.
+            Weights::Compact if radius <= self.least => 1.0 / (self.least * self.least),
+            Weights::Compact => ((radius - near) / (radius * near)).max(0.0).powi(2),
+        }
+    }
+}

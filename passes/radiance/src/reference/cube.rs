@@ -1,0 +1,147 @@
+//! A cube map of triangles around a point, and its projection on spherical harmonics.
+//!
+//! Sun 2005, section 3.3.4, with the exact solid angle of each texel in the place of its midpoint rule. Triangles are
+//! rasterised in homogeneous form (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates",
+//! 1997): no clipping, whatever lies behind the point or around it.
+
+use airglow_math::sh::{coefficient_count, evaluate};
+use airglow_math::sphere::cube::{Face, SolidAngles};
+use glam::DVec3;
+
+use crate::{Incident, RadianceError, Triangle};
+
+/// Cube maps of one face size, projected to one order.
+#[derive(Clone, Debug)]
+pub struct Cube {
+    size: usize,
+    order: usize,
+    /// Solid angle of each texel of a face.
+    solid_angles: Vec<f64>,
+    /// Basis at each texel's centre, `[face][y][x][coefficient]`.
+    basis: Vec<f64>,
+}
+
+/// What a texel sees: the radiance and distance of the nearest triangle.
+#[derive(Clone, Copy)]
+struct Texel {
+    distance: f64,
+    radiance: DVec3,
+}
+
+const EMPTY: Texel = Texel { distance: f64::INFINITY, radiance: DVec3::ZERO };
+
+impl Cube {
+    /// Tables for faces of `size` by `size` texels.
+    ///
+    /// # Errors
+    /// The order unless it is 1 to [`airglow_math::sh::MAX_ORDER`]; the size unless it is 1 to 512.
+    pub fn new(order: usize, size: usize) -> Result<Self, RadianceError> {
+        if !(1..=512).contains(&size) {
+            return Err(RadianceError::setting("face size", size, "1 to 512 texels"));
+        }
+        let angles = SolidAngles::new(size)?;
+        let mut solid_angles = Vec::with_capacity(size * size);
+        for texel in 0..size * size {
+            solid_angles.push(angles.get(texel % size, texel / size)?);
+        }
+        let mut basis = vec![0.0; 6 * size * size * coefficient_count(order)];
+        airglow_math::sh::check_order(order)?;
+        for (texel, values) in basis.chunks_exact_mut(coefficient_count(order)).enumerate() {
+            let ray = ray(Face::ALL[texel / (size * size)], size, texel % size, texel / size % size);
+            evaluate(order, ray.normalize(), values)?;
+        }
+        Ok(Self { size, order, solid_angles, basis })
+    }
+
+    /// Radiance that arrives at `point` from triangles that hide one another. A triangle seen edge-on, of no area, or
+    /// touching the point with its plane has no solid angle and is not seen.
+    ///
+    /// # Errors
+    /// None that [`Cube::new`] has not found.
+    pub fn sample(&self, point: DVec3, triangles: &[Triangle]) -> Result<Incident, RadianceError> {
+        let mut incident = Incident::dark(self.order)?;
+        let mut texels = vec![EMPTY; self.size * self.size];
+        for face in Face::ALL {
+            texels.fill(EMPTY);
+            for triangle in triangles {
+                self.rasterise(face, point, triangle, &mut texels);
+            }
+            self.project(face, &texels, &mut incident);
+        }
+        Ok(incident)
+    }
+
+    /// Keeps, in each texel of a face, the triangle if it is nearer than what is there.
+    fn rasterise(&self, face: Face, point: DVec3, triangle: &Triangle, texels: &mut [Texel]) {
+        let [mut a, mut b, c] = triangle.corners.map(|corner| corner - point);
+        let mut volume = a.dot(b.cross(c));
+        if volume < 0.0 {
+            (a, b, volume) = (b, a, -volume);
+        }
+        let Some([columns, rows]) = self.rectangle(face, [a, b, c]) else { return };
+        let edges = [b.cross(c), c.cross(a), a.cross(b)];
+        if volume == 0.0 {
+            return;
+        }
+        for y in rows[0]..rows[1] {
+            for x in columns[0]..columns[1] {
+                let ray = ray(face, self.size, x, y);
+                let weights = edges.map(|edge| edge.dot(ray));
+                if weights.iter().any(|weight| *weight < 0.0) {
+                    continue;
+                }
+                let distance = volume / weights.iter().sum::<f64>() * ray.length();
+                let texel = &mut texels[y * self.size + x];
+                if distance < texel.distance {
+                    *texel = Texel { distance, radiance: triangle.radiance };
+                }
+            }
+        }
+    }
+
+    /// Columns and rows that hold the triangle: its bounding rectangle where it lies before the face's eye, the whole
+    /// face where it reaches behind; none where it lies behind.
+    fn rectangle(&self, face: Face, corners: [DVec3; 3]) -> Option<[[usize; 2]; 2]> {
+        let [right, down, normal] = face.axes();
+        let depths = corners.map(|corner| corner.dot(normal));
+        if depths.iter().all(|depth| *depth <= 0.0) {
+            return None;
+        }
+        if depths.iter().any(|depth| *depth <= 0.0) {
+            return Some([[0, self.size]; 2]);
+        }
+        let range = |axis: DVec3| {
+            let at = |i: usize| corners[i].dot(axis) / depths[i];
+            let (low, high) = (at(0).min(at(1)).min(at(2)), at(0).max(at(1)).max(at(2)));
+            // One texel more on each side makes up for rounding.
+            let texel = |x: f64| (0.5 * (x + 1.0) * self.size as f64).clamp(-1.0, self.size as f64 + 1.0);
+            let first = (texel(low).floor() as isize - 1).max(0) as usize;
+            let end = (texel(high).ceil() as isize + 1).max(0) as usize;
+            [first.min(self.size), end.min(self.size)]
+        };
+        Some([range(right), range(down)])
+    }
+
+    fn project(&self, face: Face, texels: &[Texel], incident: &mut Incident) {
+        let count = incident.coefficients.len();
+        let first = face as usize * texels.len();
+        for (i, (texel, solid_angle)) in texels.iter().zip(&self.solid_angles).enumerate() {
+            if texel.radiance == DVec3::ZERO {
+                continue;
+            }
+            let power = *solid_angle * texel.radiance;
+            let basis = &self.basis[(first + i) * count..(first + i + 1) * count];
+            incident.coefficients.iter_mut().zip(basis).for_each(|(l, y)| *l += *y * power);
+            incident.solid_angle += solid_angle;
+            incident.nearness += solid_angle / texel.distance;
+            incident.slope += power / texel.distance;
+        }
+    }
+}
+
+/// The ray through a texel's centre, on the cube of half-side 1.
+fn ray(face: Face, size: usize, x: usize, y: usize) -> DVec3 {
+    let [right, down, normal] = face.axes();
+    let at = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
+    normal + at(x) * right + at(y) * down
+}
