@@ -49,9 +49,10 @@ drivers() {
 
 # Makes tests run on lavapipe, on two threads, whatever the machine has, with its compiled shaders kept between runs.
 use_lavapipe() {
-    # The software renderer and the layers that tests run under; a C++ compiler for the shader compiler of tools/xtask;
+    # The software renderer and the layers that tests run under; a C++ compiler for the shader compiler of tools/xtask,
+    # and with Vulkan's headers for the host of passes/capi;
     # a display without a screen for the test of the window, and what winit opens on X11.
-    install_packages libvulkan1 mesa-vulkan-drivers vulkan-validationlayers g++ \
+    install_packages libvulkan1 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers g++ \
         xvfb libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0
     local driver
     driver=$(drivers 'lvp_icd*.json' | head -n 1)

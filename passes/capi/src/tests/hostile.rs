@@ -4,7 +4,9 @@ use std::ffi::c_void;
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 
-use super::{adopt_info, call, error, function, message, refused, requirements, settings};
+use airglow_gpu::ash::vk::{self, Handle};
+
+use super::{adopt_info, call, error, function, message, refused, requirements, settings, with_host};
 use crate::bake::{AirglowBakeInfo, airglow_bake};
 use crate::context::*;
 use crate::input::{array, versioned};
@@ -21,7 +23,6 @@ use crate::requirements::*;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 use crate::text::AirglowText;
 use airglow_tests::conformance::HostDevice;
-use airglow_tests::device::open;
 
 #[test]
 fn null_is_refused_everywhere_and_dropping_it_is_nothing() {
@@ -169,28 +170,13 @@ fn a_bake_of_nonsense_is_refused() {
 
 #[test]
 fn a_device_that_lacks_something_and_texts_that_do_not_fit() {
-    use airglow_gpu::ash::vk::{self, Handle};
-    let asked = requirements(&settings(0));
-    let open = open(&airglow_gpu::Requirements::engine());
-    let find = open.entry().static_fn().get_instance_proc_addr;
-    // SAFETY: a live instance; the function of that name has that type.
-    let device_address: vk::PFN_vkGetDeviceProcAddr = unsafe {
-        std::mem::transmute(find(open.instance().handle(), c"vkGetDeviceProcAddr".as_ptr()).unwrap())
-    };
-    let host = HostDevice {
-        get_instance_proc_addr: find,
-        get_device_proc_addr: device_address,
-        instance: open.instance().handle(),
-        api_version: vk::API_VERSION_1_3,
-        physical_device: open.physical_device(),
-        device: open.device().handle(),
-        queue_family: open.queue_family(),
-        features: Default::default(),
-        extensions: &[],
-    };
+    with_host(|host| lacking(host, requirements(&settings(0))));
+}
+
+fn lacking(host: &HostDevice, asked: *mut AirglowRequirements) {
     let mut data = [1u8; 4096];
     let mut text = AirglowText { data: data.as_mut_ptr().cast(), capacity: data.len(), length: 0 };
-    let info = AirglowAdoptInfo { requirements: asked, missing: &raw mut text, ..adopt_info(&host) };
+    let info = AirglowAdoptInfo { requirements: asked, missing: &raw mut text, ..adopt_info(host) };
     let mut context = null_mut();
     let said = refused!(Missing, airglow_context_adopt, &raw const info, &raw mut context);
     assert!(context.is_null() && said.contains("synchronization2"), "{said}");

@@ -1,12 +1,17 @@
 //! The functions as a host calls them.
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 mod conformance;
+mod frame;
 mod hostile;
+mod memory;
 
 use std::ffi::CStr;
 use std::mem::zeroed;
 
+use airglow_gpu::ash::vk::Handle;
 use airglow_tests::conformance::HostDevice;
+use airglow_tests::device::open;
 
 use crate::context::{AirglowAdoptInfo, AirglowContext, airglow_context_adopt};
 use crate::physical::AirglowFunction;
@@ -14,6 +19,7 @@ use crate::relight::airglow_relight_require;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
 use crate::status::{AirglowError, AirglowStatus};
+use crate::text::AirglowText;
 
 /// An error to be filled.
 fn error() -> AirglowError {
@@ -52,6 +58,35 @@ macro_rules! refused {
 }
 use refused;
 
+/// Runs `test` with a host's device.
+fn with_host(test: impl FnOnce(&HostDevice)) {
+    let asked = airglow_relight::Relight::requirements(&settings(0).read().unwrap());
+    let open = open(&asked);
+    let mut extensions = Vec::new();
+    let info = open.adopt_info(&mut extensions, 1);
+    test(&HostDevice {
+        get_instance_proc_addr: info.get_instance_proc_addr,
+        get_device_proc_addr: info.get_device_proc_addr.unwrap(),
+        instance: info.instance,
+        api_version: info.api_version,
+        physical_device: info.physical_device,
+        device: info.device,
+        queue_family: info.queue_family,
+        features: info.features,
+        extensions: &["VK_EXT_debug_utils"],
+    });
+    let said = open.messages().take();
+    assert!(said.is_empty(), "{said:?}");
+}
+
+/// What a call writes to a text.
+fn text(write: impl Fn(*mut AirglowText)) -> String {
+    let mut bytes = vec![0u8; 1 << 16];
+    let mut text = AirglowText { data: bytes.as_mut_ptr().cast(), capacity: bytes.len(), length: 0 };
+    write(&raw mut text);
+    String::from_utf8(bytes[..text.length].to_vec()).unwrap()
+}
+
 /// Settings that are all default but for the method.
 fn settings(method: u32) -> AirglowRelightSettings {
     let struct_size = size_of::<AirglowRelightSettings>() as u32;
@@ -75,7 +110,6 @@ fn function<F: Copy>(function: F) -> AirglowFunction {
 
 /// What a host states of its device; extensions and features are added by [`adopt`].
 fn adopt_info(host: &HostDevice) -> AirglowAdoptInfo {
-    use airglow_gpu::ash::vk::Handle;
     AirglowAdoptInfo {
         struct_size: size_of::<AirglowAdoptInfo>() as u32,
         api_version: host.api_version,
