@@ -15,8 +15,6 @@ pub mod physical;
 pub mod relight;
 pub mod requirements;
 pub mod status;
-#[cfg(all(test, feature = "relight"))]
-mod tests;
 pub mod text;
 
 /// The version of the library: major in the highest 10 bits, minor in the next 10, patch in the lowest 12.

@@ -149,8 +149,7 @@ pub unsafe extern "C" fn airglow_requirements_patch(
 
 impl AirglowRequirements {
     /// Adds what a pass asks for.
-    #[cfg(feature = "relight")]
-    pub(crate) fn add(&mut self, more: &Requirements) {
+    pub fn add(&mut self, more: &Requirements) {
         self.asked = self.asked.clone().and(more);
         self.texts.clear();
     }

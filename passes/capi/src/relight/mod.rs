@@ -9,6 +9,8 @@ pub mod record;
 pub mod resources;
 pub mod settings;
 mod sky;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 use std::ffi::c_char;

@@ -1,6 +1,6 @@
 //! Null, zero, truncated, enlarged, misaligned and huge: refused with a status and words, and nothing is touched.
 
-use std::ffi::c_void;
+use std::ffi::{c_char, c_void};
 use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 
@@ -191,7 +191,7 @@ fn lacking(host: &HostDevice, asked: *mut AirglowRequirements) {
     ] {
         refused!(InvalidArgument, airglow_context_adopt, &raw const wrong, &raw mut context);
     }
-    unsafe extern "system" fn nothing(_: vk::Instance, _: *const std::ffi::c_char) -> vk::PFN_vkVoidFunction {
+    unsafe extern "system" fn nothing(_: vk::Instance, _: *const c_char) -> vk::PFN_vkVoidFunction {
         None
     }
     let find: vk::PFN_vkGetInstanceProcAddr = nothing;

@@ -1,5 +1,4 @@
 //! The functions as a host calls them.
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 mod conformance;
 mod frame;
@@ -36,10 +35,10 @@ fn message(error: &AirglowError) -> &str {
 /// Calls a function with an error at its end, and fails the test with the message.
 macro_rules! call {
     ($function:path, $($argument:expr),*) => {{
-        let mut error = $crate::tests::error();
+        let mut error = $crate::relight::tests::error();
         // SAFETY: the tests keep the function's promises.
         let status = unsafe { $function($($argument,)* &raw mut error) };
-        assert_eq!(status, AirglowStatus::Ok, "{}: {}", stringify!($function), $crate::tests::message(&error));
+        assert_eq!(status, AirglowStatus::Ok, "{}: {}", stringify!($function), $crate::relight::tests::message(&error));
     }};
 }
 use call;
@@ -47,10 +46,10 @@ use call;
 /// Calls a function with an error at its end, which must be this status; returns the message.
 macro_rules! refused {
     ($status:ident, $function:path, $($argument:expr),*) => {{
-        let mut error = $crate::tests::error();
+        let mut error = $crate::relight::tests::error();
         // SAFETY: what is refused is refused before it is used.
         let status = unsafe { $function($($argument,)* &raw mut error) };
-        let said = $crate::tests::message(&error).to_owned();
+        let said = $crate::relight::tests::message(&error).to_owned();
         assert_eq!((status, error.status), (AirglowStatus::$status, AirglowStatus::$status), "{said}");
         assert!(!said.is_empty(), "{} says nothing", stringify!($function));
         said
