@@ -10,10 +10,11 @@
 //!
 //! where `path` is the optical path over the stretch's near end and `excess` how much longer the one over its far end
 //! is: no exponent is positive, no angle appears, and no two terms cancel. [`taps`] gives K for any phase function and
-//! hook, [`poles`] in closed form for an isotropic, homogeneous medium.
+//! hook, [`poles`] in closed form for an isotropic, homogeneous medium. [`lobe`] gives what a surface reflects of the glow.
 //!
 //! Only operations of GLSL are used, none of them trigonometric.
 
+pub mod lobe;
 pub mod poles;
 pub mod taps;
 

@@ -58,7 +58,7 @@ pub fn kernel(segment: Segment, extinction: f32, precision: Precision) -> f32 {
 }
 
 /// `∫ exp(-β q) / (h² + (m + q)²) dq` over all q >= 0, in 1/m.
-fn endless(extinction: f32, offset: f32, start: f32, precision: Precision) -> f32 {
+pub(super) fn endless(extinction: f32, offset: f32, start: f32, precision: Precision) -> f32 {
     let (u, w) = (extinction * offset, extinction * start);
     let (square, norm) = (u * u, u * u + w * w);
     if norm >= 1.0 {

@@ -9,8 +9,9 @@
 //! q = s r y / (1 - y)²,    dq = s r (1 + y) / (1 - y)³ dy
 //! ```
 //!
-//! is equi-angular's equal near the light, spreads as √q beyond, and needs no trigonometry. Its Gauss rule converges
-//! like 10^(-n/3) over all depths from 1e-8 to 1e3.
+//! is equi-angular's equal near the light, spreads as √q beyond, and needs no trigonometry. Over all angles, lengths and
+//! optical distances from 1e-4 to 100 its Gauss rule errs by at most 7e-4 with 6 nodes, 2.4e-4 with 8, 3e-5 with 12 and 1e-5
+//! with 16 (`examples/evaluators.rs`); equi-angular nodes by 5e-3, 3e-3, 1.4e-3 and 8e-4.
 
 use super::Segment;
 
@@ -93,7 +94,7 @@ const NODES_6: [(f32, f32); 6] = [
 ];
 
 /// Gauss-Legendre, 16 points.
-const NODES_16: [(f32, f32); 16] = [
+pub(super) const NODES_16: [(f32, f32); 16] = [
     (0.005_299_532_3, 0.013_576_23),
     (0.027_712_489, 0.031_126_762),
     (0.067_184_396, 0.047_579_255),

@@ -42,18 +42,23 @@ fn truth(extinction: f32, sight: Sight, far: f64) -> f64 {
     4.0 * PI * airlight(f64::from(extinction), sight, 0.0, far, Phase::Isotropic).unwrap()
 }
 
+/// One of a sequence that covers the domain evenly (Roberts 2018, the additive recurrence of three dimensions): extinction
+/// from 1e-4 over so many decades, the ray's length, and a light of distance 1 at any angle.
+fn configuration(i: u32, decades: f64) -> (f32, f32, Light, Sight) {
+    let part = |alpha: f64| (0.5 + alpha * f64::from(i)).fract();
+    let [a, b, c] = [0.819_172_513, 0.671_043_607, 0.549_700_478].map(part);
+    let far = if b < 0.9 { 10_f64.powf(-4.0 + 8.0 * b / 0.9) as f32 } else { INFINITE };
+    let (light, sight) = light(1.0, PI * c);
+    (10_f64.powf(-4.0 + decades * a) as f32, far, light, sight)
+}
+
 #[test]
 fn every_configuration_of_a_sweep_is_met() {
     for i in 0..3000_u32 {
-        // The additive recurrence of the plastic number's cube (Roberts 2018): even cover in three dimensions.
-        let part = |alpha: f64| (0.5 + alpha * f64::from(i)).fract();
-        let [a, b, c] = [0.819_172_513, 0.671_043_607, 0.549_700_478].map(part);
-        let extinction = 10_f64.powf(-4.0 + 6.0 * a) as f32;
-        let far = if b < 0.9 { 10_f64.powf(-4.0 + 8.0 * b / 0.9) as f32 } else { INFINITE };
-        let (light, sight) = light(1.0, PI * c);
+        let (extinction, far, light, sight) = configuration(i, 6.0);
         let expected = truth(extinction, sight, if far == INFINITE { f64::INFINITY } else { far.into() });
         for result in all(light, extinction, far) {
-            check(&format!("T {extinction:e}, far {far:e}, gamma {}", PI * c), result, expected);
+            check(&format!("T {extinction:e}, far {far:e}, {light:?}"), result, expected);
         }
     }
 }
@@ -99,6 +104,25 @@ fn a_light_at_the_eye_and_a_short_ray_far_away_are_finite() {
         for result in all(light, 0.01, 1e-3) {
             check(&format!("a millimetre, {gamma}"), result, truth(0.01, sight, f64::from(1e-3_f32)));
         }
+    }
+}
+
+/// Three channels may share their taps: those of the smallest extinction serve one four times as large.
+#[test]
+fn taps_of_a_thinner_medium_serve_a_denser_one() {
+    for (rule, tolerance) in [(taps::REFERENCE, 3e-5), (taps::DEFAULT, 3e-3)] {
+        let mut worst = 0.0_f64;
+        for i in 0..3000_u32 {
+            let (extinction, far, light, sight) = configuration(i, 5.5);
+            let segment = Segment::new(light, 0.0, far);
+            let sum: f32 = taps::taps(segment, 0.25 * extinction, rule)
+                .map(|tap| tap.weight * (-extinction * tap.excess).exp())
+                .sum();
+            let actual = f64::from(transmittance(extinction, segment.path) * sum);
+            let expected = truth(extinction, sight, if far == INFINITE { f64::INFINITY } else { far.into() });
+            worst = worst.max((actual / expected - 1.0).abs());
+        }
+        assert!(worst < tolerance, "{worst:e} > {tolerance:e}");
     }
 }
 

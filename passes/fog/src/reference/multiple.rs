@@ -168,6 +168,15 @@ mod tests {
         }
     }
 
+    /// The thesis's measure at an optical distance of 2, which tells little: the first direction decides it.
+    #[test]
+    fn the_error_over_the_peak_is_small_where_the_peak_is_sharp() {
+        let later = LaterOrders::simulate(3000);
+        let (fine, coarse) = (later.rms_over_peak(2.0, 0.1).unwrap(), later.rms_over_peak(2.0, 1.0).unwrap());
+        assert_relative("at 0.1 degrees", fine, 0.016, 0.2);
+        assert_relative("at 1 degree", coarse, 0.13, 0.2);
+    }
+
     #[test]
     fn single_scattering_falls_behind_as_the_medium_thickens() {
         let later = LaterOrders::simulate(3000);

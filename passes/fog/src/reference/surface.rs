@@ -17,6 +17,9 @@ use super::closed_form::glow;
 /// Tolerance of the nested quadratures.
 const TOLERANCE: f64 = 1e-11;
 
+/// What a lobe of peak 1 may err by at its foot.
+const NEGLIGIBLE: f64 = 1e-14;
+
 /// G_n of eq. 3.23: the glow of a light at an optical distance (above 0), through the lobe `cos^exponent` whose axis is
 /// `theta` radians (0 to π) from it. An exponent of 1 is the Lambertian lobe, which the thesis calls G_0.
 ///
@@ -114,11 +117,16 @@ fn panels(a: f64, b: f64, between: &[f64]) -> Vec<f64> {
     ends
 }
 
-/// The integral over all panels, to a tolerance of the whole.
+/// The integral over all panels.
 fn sum(ends: &[f64], mut f: impl FnMut(f64) -> f64) -> Result<f64, MathError> {
     let mut total = 0.0;
     for pair in ends.windows(2) {
-        total += adaptive(&mut f, pair[0], pair[1], TOLERANCE)?.value;
+        total += match adaptive(&mut f, pair[0], pair[1], TOLERANCE) {
+            Ok(integral) => integral.value,
+            // Far from a narrow lobe its powers are tiny, and noise of their own cosine.
+            Err(MathError::NoConvergence { value, error }) if error < NEGLIGIBLE => value,
+            Err(error) => return Err(error),
+        };
     }
     Ok(total)
 }
@@ -174,20 +182,15 @@ pub fn complete(fog: Fog, far: f64, surface: f64, airlight: f64) -> f64 {
     (-fog.extinction * far).exp() * surface + fog.scattering * airlight
 }
 
-/// The Phong exponent whose lobe about the mirrored direction is as wide as that of GGX with `alpha` (roughness squared),
-/// 0.02 to 1: the means of their cosines are alike.
+/// The Phong exponent whose lobe about the mirrored direction takes the place of GGX's with `alpha` (roughness squared, 0
+/// excluded, to 1): `0.4 (1 / alpha² - 1)`, at least 0.05.
 ///
-/// Seen along the normal the density of GGX over reflected directions is `D(δ/2) / 4` at the angle δ from the mirrored
-/// one; its tails are longer than any power's.
-///
-/// # Errors
-/// [`MathError::NoConvergence`].
-pub fn exponent_of_ggx(alpha: f64) -> Result<f64, MathError> {
-    let ends = panels(0.0, FRAC_PI_2, &[alpha, 4.0 * alpha]);
-    let density = |delta: f64| ggx_lobe(alpha, delta.cos()) * delta.sin();
-    let mean = sum(&ends, |delta| delta.cos() * density(delta))? / sum(&ends, density)?;
-    // The mean cosine of cos^n over the hemisphere is (n + 1) / (n + 2).
-    Ok((2.0 * mean - 1.0) / (1.0 - mean))
+/// Seen along the normal, the density of GGX over reflected directions is [`ggx_lobe`] of the angle from the mirrored
+/// one. Its tails are longer than any power's, so no exponent fits: this one keeps the glow of a light, at any angle and
+/// optical distances from 0.1 to 5, within 30 percent of GGX's, while an equal mean cosine errs by 57.
+#[must_use]
+pub fn exponent_of_ggx(alpha: f64) -> f64 {
+    (0.4 * (1.0 / (alpha * alpha) - 1.0)).max(0.05)
 }
 
 /// `D(δ/2) / 4` of GGX for the cosine of δ, 1/sr.
@@ -252,6 +255,27 @@ mod tests {
         let actual = scaled_lobe_glow(optical, theta, exponent).unwrap();
         let expected = TAU / (exponent + 1.0) * optical * glow(optical, theta).unwrap();
         assert_relative("G_n", actual, expected, 1e-4);
+    }
+
+    /// The glow through GGX's lobe against that through the power, both of integral 1, over all angles and optical
+    /// distances from 0.1 to 5: the mapping's stated error.
+    #[test]
+    fn a_power_stands_for_ggx_within_a_stated_error() {
+        for alpha in [0.02, 0.1, 0.35, 0.7] {
+            let exponent = exponent_of_ggx(alpha);
+            let ends = panels(0.0, FRAC_PI_2, &[alpha, 4.0 * alpha]);
+            let norm = TAU * sum(&ends, |delta| ggx_lobe(alpha, delta.cos()) * delta.sin()).unwrap();
+            let mut worst = 0.0_f64;
+            for optical in [0.1, 1.0, 5.0] {
+                for theta in [0.0, alpha, 3.0 * alpha, 0.3, 0.8, 1.5, 3.0] {
+                    let lobe = |cosine| ggx_lobe(alpha, cosine) / norm;
+                    let ggx = scaled_glow_through(optical, theta, alpha, lobe).unwrap();
+                    let power = scaled_lobe_glow(optical, theta, exponent).unwrap();
+                    worst = worst.max((power * (exponent + 1.0) / TAU / ggx - 1.0).abs());
+                }
+            }
+            assert!(worst < 0.31, "alpha {alpha}, exponent {exponent}: {worst}");
+        }
     }
 
     #[test]
