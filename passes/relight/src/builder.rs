@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use airglow_graph::{Access, BufferDesc, LeftOut, PassKind, ResourceDesc, State};
 
-use crate::control::{Once, Rotations};
+use crate::control::{Once, Rotations, Shown};
 use crate::frame::ResultRange;
 use crate::resident::{Resident, Upload};
 use crate::stage::{Need, Prepared, Resource, Stage, Use, Work};
@@ -54,7 +54,12 @@ impl Builder {
     }
 
     /// The stages, copies to the device first.
-    pub(crate) fn finish(mut self, ranges: Vec<ResultRange>, rotations: Option<Rotations>) -> Prepared {
+    pub(crate) fn finish(
+        mut self,
+        ranges: Vec<ResultRange>,
+        rotations: Option<Rotations>,
+        shown: Shown,
+    ) -> Prepared {
         if !self.uploads.is_empty() {
             let (resources, uploads): (Vec<_>, Vec<_>) =
                 std::mem::take(&mut self.uploads).into_iter().unzip();
@@ -64,6 +69,6 @@ impl Builder {
             self.stages.rotate_right(1);
         }
         let needs = self.needs.into_iter().collect();
-        Prepared { stages: self.stages, needs, left_out: self.left_out, ranges, rotations }
+        Prepared { stages: self.stages, needs, left_out: self.left_out, ranges, rotations, shown }
     }
 }

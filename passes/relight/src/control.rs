@@ -1,6 +1,7 @@
 //! What changes from frame to frame without a new plan: rotations, pre-exposure, and whether the environment is
 //! projected.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use airglow_math::World;
@@ -76,9 +77,39 @@ impl Rotations {
         Ok(())
     }
 
-    /// From the light to the object space of each instance.
-    pub(crate) fn get(&self) -> Vec<Turn> {
-        lock(&self.current).turns.clone()
+    /// Reads the turns from the light to the object space of each instance.
+    pub(crate) fn with<T>(&self, read: impl FnOnce(&[Turn]) -> T) -> T {
+        read(&lock(&self.current).turns)
+    }
+}
+
+/// Which instances of a prepared frame are shown. Nothing is recorded for the vertices of one that is hidden: its
+/// results are not to be read. Hiding and showing changes no plan, makes no pipeline and allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Shown(Arc<[AtomicBool]>);
+
+impl Shown {
+    /// All are shown.
+    pub(crate) fn all(instances: usize) -> Self {
+        Self((0..instances).map(|_| AtomicBool::new(true)).collect())
+    }
+
+    /// Shows or hides an instance, by its index in the frame, from the next recording on.
+    ///
+    /// # Errors
+    /// [`RelightError::Size`] for an index past the instances.
+    pub fn set(&self, instance: usize, shown: bool) -> Result<(), RelightError> {
+        let Some(flag) = self.0.get(instance) else {
+            let allowed = format!("below {}", self.0.len());
+            let (name, what) = ("the frame".to_owned(), "an index of an instance");
+            return Err(RelightError::Size { name, what, actual: instance as u64, allowed });
+        };
+        flag.store(shown, Ordering::Relaxed);
+        Ok(())
+    }
+
+    pub(crate) fn is(&self, instance: u32) -> bool {
+        self.0.get(instance as usize).is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 }
 

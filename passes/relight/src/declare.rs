@@ -1,6 +1,7 @@
 //! Adds the pass to a graph: the stages of a frame as passes, their resources as handles.
 
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use airglow_gpu::{Context, Imports, Record};
 use airglow_graph::{Buffer, Graph, Handle, Image, PassBuilder, ResourceDesc};
@@ -35,7 +36,7 @@ impl Relight {
         imports: &mut Imports,
         frame: &GraphFrame,
     ) -> Result<Relit<Handle<Buffer>>, RelightError> {
-        let Prepared { stages, needs, left_out, ranges, rotations } = self.prepare(context, frame)?;
+        let Prepared { stages, needs, left_out, ranges, rotations, shown } = self.prepare(context, frame)?;
         graph.pipelines("relight", self.pipeline_count);
         left_out.into_iter().for_each(|left_out| graph.leave_out(left_out));
         let mut named = BTreeMap::new();
@@ -69,6 +70,7 @@ impl Relight {
             ranges,
             environment: buffer(Resource::EnvironmentLight),
             rotations,
+            shown,
         })
     }
 }
@@ -99,8 +101,10 @@ fn declare(graph: &mut Graph<Record>, named: &mut BTreeMap<Resource, Named>, sta
         }
         used.push((entry.resource, *name));
     }
+    // Kept from frame to frame, so that a frame puts what it binds in places that are there.
+    let kept = Mutex::new(Bindings::default());
     pass.record(Box::new(move |recorder, resources| {
-        let mut bindings = Bindings::default();
+        let mut bindings = kept.lock().unwrap_or_else(PoisonError::into_inner);
         for (resource, name) in &used {
             match name {
                 Named::Buffer(handle) => {

@@ -6,7 +6,7 @@
 
 use glam::DQuat;
 
-use crate::control::Rotations;
+use crate::control::{Rotations, Shown};
 use crate::mesh::MeshId;
 use crate::rotation::Orientation;
 
@@ -107,4 +107,6 @@ pub struct Relit<B> {
     pub environment: Option<B>,
     /// Turns light and instances before the plan is recorded again; none for light of each vertex.
     pub rotations: Option<Rotations>,
+    /// Shows and hides instances before the plan is recorded again.
+    pub shown: Shown,
 }

@@ -61,7 +61,7 @@ mod tables;
 mod vertices;
 
 pub use bench::{Bench, Case, CaseLight, Run, Texels};
-pub use control::Rotations;
+pub use control::{Rotations, Shown};
 pub use declare::GraphFrame;
 pub use envelope::{Envelope, Pipelines};
 pub use error::RelightError;

@@ -6,7 +6,7 @@ use airglow_graph::{Access, ImageDesc, PassKind, ResourceDesc, State};
 
 use crate::RelightError;
 use crate::builder::Builder;
-use crate::control::{Once, Rotations};
+use crate::control::{Once, Rotations, Shown};
 use crate::envelope::LightPipelines;
 use crate::frame::{Environment, Frame, Instance, Light, ResultRange};
 use crate::mesh::Mesh;
@@ -29,7 +29,7 @@ fn read_anywhere() -> State {
 impl Relight {
     /// The frame as data, for a host without our graph: provide what [`Prepared::needs`] lists, then
     /// [`Prepared::record`]. It may be recorded again in later frames while meshes, light and sizes stay;
-    /// [`Prepared::rotations`] turns light and instances in between.
+    /// [`Prepared::rotations`] turns light and instances in between, [`Prepared::shown`] hides instances.
     ///
     /// # Errors
     /// [`RelightError::Instance`] and [`RelightError::Settings`] for inputs that the settings do not allow,
@@ -41,16 +41,16 @@ impl Relight {
         frame: &Frame<B, I>,
     ) -> Result<Prepared, RelightError> {
         let mut builder = Builder::default();
-        let ranges = self.ranges(frame)?;
+        let (ranges, shown) = (self.ranges(frame)?, Shown::all(frame.instances.len()));
         let total = ranges.last().map_or(0, |range| range.offset + range.size);
         if frame.instances.is_empty() {
             builder.leave_out("relight", "the frame has no instance of a mesh", 0, "an instance");
-            return Ok(builder.finish(Vec::new(), None));
+            return Ok(builder.finish(Vec::new(), None, shown));
         }
         if matches!(frame.light, Light::None) {
             let why = "the scene has no environment and no other light";
             builder.leave_out("relight", why, total, "an environment, or SH light of the host");
-            return Ok(builder.finish(Vec::new(), None));
+            return Ok(builder.finish(Vec::new(), None, shown));
         }
         let rotations = self.light(context, &mut builder, frame)?;
         match frame.target {
@@ -71,8 +71,8 @@ impl Relight {
             let desc = ImageDesc::new_2d(RECTANGLE_WIDTH, rows as u32, RECTANGLE_FORMAT);
             builder.needs.insert(Resource::Rectangle, Need::Scratch(ResourceDesc::Image(desc)));
         }
-        self.vertices(&mut builder, frame, &ranges)?;
-        Ok(builder.finish(ranges, rotations))
+        self.vertices(&mut builder, frame, &ranges, &shown)?;
+        Ok(builder.finish(ranges, rotations, shown))
     }
 
     /// The mesh of an instance.

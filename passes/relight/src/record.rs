@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use airglow_gpu::{Binding, BufferSlice, ColorAttachment, GpuError, ImageView, Load, Recorder, Rendering};
 use airglow_graph::Access;
 
+use crate::control::Shown;
 use crate::kernels::WORKGROUP;
 use crate::pack::RECTANGLE_WIDTH;
 use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Work};
@@ -143,8 +144,8 @@ impl Stage {
                 recorder.dispatch([*coefficients, 1, 1])
             }
             Work::Rotate { pipeline, source, target, rotations, strides } => {
-                let values = rotations.get();
-                let turns = recorder.upload(&values)?;
+                let (turns, count) =
+                    rotations.with(|turns| Ok::<_, GpuError>((recorder.upload(turns)?, turns.len())))?;
                 let bound = [
                     Binding::storage(0, bindings.buffer(*source)?),
                     Binding::storage(1, &turns),
@@ -152,7 +153,7 @@ impl Stage {
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
                 recorder.push_constants(strides)?;
-                recorder.dispatch([values.len() as u32, 1, 1])
+                recorder.dispatch([count as u32, 1, 1])
             }
             Work::Matrices { pipeline, elements, instances, strides } => {
                 let bound = [
@@ -164,12 +165,12 @@ impl Stage {
                 recorder.push_constants(strides)?;
                 recorder.dispatch([elements.div_ceil(WORKGROUP), *instances, 1])
             }
-            Work::Vertices(chunks) => chunks.iter().try_for_each(|chunk| {
-                recorder.bind_compute(&chunk.pipeline, &chunk_bindings(&chunk.bound, bindings)?)?;
+            Work::Vertices(chunks, shown) => shown_chunks(chunks, shown).try_for_each(|chunk| {
+                with_bindings(&chunk.bound, bindings, |bound| recorder.bind_compute(&chunk.pipeline, bound))?;
                 recorder.push_constants(&chunk.constants)?;
                 recorder.dispatch([chunk.groups, 1, 1])
             }),
-            Work::Rectangle(chunks) => draw_rectangle(recorder, chunks, bindings),
+            Work::Rectangle(chunks, shown) => draw_rectangle(recorder, chunks, shown, bindings),
             Work::Copy { size } => {
                 let results = bindings.slice(Resource::Results, 0, *size)?;
                 recorder.copy_image_to_buffer(bindings.image(Resource::Rectangle)?, results)
@@ -178,28 +179,48 @@ impl Stage {
     }
 }
 
-fn chunk_bindings(bound: &[Bound], bindings: &Bindings) -> Result<Vec<Binding>, GpuError> {
-    let bind = |bound: &Bound| {
+/// Those of the instances that are shown.
+fn shown_chunks<'a, P>(
+    chunks: &'a [ChunkWork<P>],
+    shown: &'a Shown,
+) -> impl Iterator<Item = &'a ChunkWork<P>> {
+    chunks.iter().filter(|chunk| shown.is(chunk.instance))
+}
+
+/// Hands what a chunk binds to `bind`, on the stack: no kernel over vertices binds more than five.
+fn with_bindings(
+    bound: &[Bound],
+    bindings: &Bindings,
+    bind: impl FnOnce(&[Binding]) -> Result<(), GpuError>,
+) -> Result<(), GpuError> {
+    let one = |bound: &Bound| {
         let slice = bindings.slice(bound.resource, bound.offset, bound.size)?;
-        Ok(match bound.uniform {
+        Ok::<_, GpuError>(match bound.uniform {
             true => Binding::uniform(bound.binding, slice),
             false => Binding::storage(bound.binding, slice),
         })
     };
-    bound.iter().map(bind).collect()
+    match bound {
+        [a, b] => bind(&[one(a)?, one(b)?]),
+        [a, b, c] => bind(&[one(a)?, one(b)?, one(c)?]),
+        [a, b, c, d] => bind(&[one(a)?, one(b)?, one(c)?, one(d)?]),
+        [a, b, c, d, e] => bind(&[one(a)?, one(b)?, one(c)?, one(d)?, one(e)?]),
+        _ => Err(GpuError::misuse("relight", format!("a kernel with {} bindings", bound.len()))),
+    }
 }
 
 /// Each chunk fills the rows of the rectangle that are its own.
 fn draw_rectangle(
     recorder: &mut Recorder<'_>,
     chunks: &[ChunkWork<airglow_gpu::GraphicsPipeline>],
+    shown: &Shown,
     bindings: &Bindings,
 ) -> Result<(), GpuError> {
     let view = bindings.image(Resource::Rectangle)?;
     let colors = [ColorAttachment { view, load: Load::Discard }];
     recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
-    for chunk in chunks {
-        recorder.bind_graphics(&chunk.pipeline, &chunk_bindings(&chunk.bound, bindings)?)?;
+    for chunk in shown_chunks(chunks, shown) {
+        with_bindings(&chunk.bound, bindings, |bound| recorder.bind_graphics(&chunk.pipeline, bound))?;
         recorder.push_constants(&chunk.constants)?;
         let rows = chunk.constants.vertex_count.div_ceil(RECTANGLE_WIDTH);
         recorder.set_scissor([0, chunk.constants.first_row], [RECTANGLE_WIDTH, rows])?;

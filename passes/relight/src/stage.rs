@@ -5,7 +5,7 @@ use std::fmt;
 use airglow_gpu::{Buffer, ComputePipeline, GraphicsPipeline};
 use airglow_graph::{Access, LeftOut, PassKind, ResourceDesc, State};
 
-use crate::control::{Once, Rotations};
+use crate::control::{Once, Rotations, Shown};
 use crate::frame::ResultRange;
 use crate::resident::Upload;
 
@@ -122,6 +122,8 @@ pub struct Prepared {
     pub ranges: Vec<ResultRange>,
     /// The rotations, to be changed before the frame is recorded again; none for light of each vertex.
     pub rotations: Option<Rotations>,
+    /// Shows and hides instances before the frame is recorded again.
+    pub shown: Shown,
 }
 
 /// A binding of a kernel to part of a resource.
@@ -137,6 +139,8 @@ pub(crate) struct Bound {
 /// A kernel over the vertices of a chunk.
 #[derive(Clone)]
 pub(crate) struct ChunkWork<P> {
+    /// Whose vertices they are, by index in the frame.
+    pub instance: u32,
     pub pipeline: P,
     pub bound: Vec<Bound>,
     pub constants: ChunkConstants,
@@ -187,8 +191,8 @@ pub(crate) enum Work {
         instances: u32,
         strides: Pair,
     },
-    Vertices(Vec<ChunkWork<ComputePipeline>>),
-    Rectangle(Vec<ChunkWork<GraphicsPipeline>>),
+    Vertices(Vec<ChunkWork<ComputePipeline>>, Shown),
+    Rectangle(Vec<ChunkWork<GraphicsPipeline>>, Shown),
     Copy {
         size: u64,
     },

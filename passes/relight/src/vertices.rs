@@ -7,6 +7,7 @@ use airglow_graph::{Access, PassKind};
 
 use crate::RelightError;
 use crate::builder::Builder;
+use crate::control::Shown;
 use crate::envelope::VertexPipeline;
 use crate::frame::{Frame, Instance, ResultRange};
 use crate::kernels::{self, Kernel, Source};
@@ -23,6 +24,7 @@ impl Relight {
         builder: &mut Builder,
         frame: &Frame<B, I>,
         ranges: &[ResultRange],
+        shown: &Shown,
     ) -> Result<(), RelightError> {
         let (mut compute, mut rectangle) = (Vec::new(), Vec::new());
         let mut uses: BTreeMap<Resource, Access> = BTreeMap::new();
@@ -48,10 +50,22 @@ impl Relight {
                 let groups = chunk.count.div_ceil(kernels::vertices_per_workgroup(&self.settings, source));
                 match pipeline.clone() {
                     VertexPipeline::Compute(pipeline) => {
-                        compute.push(ChunkWork { pipeline, bound, constants, groups });
+                        compute.push(ChunkWork {
+                            instance: index as u32,
+                            pipeline,
+                            bound,
+                            constants,
+                            groups,
+                        });
                     }
                     VertexPipeline::Rectangle(pipeline) => {
-                        rectangle.push(ChunkWork { pipeline, bound, constants, groups: 0 });
+                        rectangle.push(ChunkWork {
+                            instance: index as u32,
+                            pipeline,
+                            bound,
+                            constants,
+                            groups: 0,
+                        });
                     }
                 }
             }
@@ -63,7 +77,7 @@ impl Relight {
                     Output::Colour => "relight colours",
                     Output::Incident => "relight incident radiance",
                 };
-                builder.stage(name, PassKind::Compute, uses, Work::Vertices(compute), None);
+                builder.stage(name, PassKind::Compute, uses, Work::Vertices(compute, shown.clone()), None);
             }
             Method::Fragment => {
                 uses.push((Resource::Rectangle, Access::ColorAttachmentWrite));
@@ -71,7 +85,7 @@ impl Relight {
                     "relight rectangle",
                     PassKind::Graphics,
                     uses,
-                    Work::Rectangle(rectangle),
+                    Work::Rectangle(rectangle, shown.clone()),
                     None,
                 );
                 let uses = vec![

@@ -1,0 +1,184 @@
+//! What may come and go within a plan costs nothing when it is away: no pipeline, no allocation, no new plan.
+
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
+mod host;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::{Arc, Mutex};
+
+use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::open::{FrameLoop, FrameSemaphores};
+use airglow_gpu::{Context, Counts, Execution, Imports, Label, Location, Readback, Timing};
+use airglow_graph::{Access, BufferDesc, Graph, PassKind};
+use airglow_relight::{
+    Frame, GraphFrame, Instance, Light, Method, Relight, Relit, ResultRange, Settings, Shown,
+};
+use airglow_tests::device::Fixture;
+use glam::DQuat;
+use host::{Numbers, fixture};
+
+thread_local! {
+    /// Allocations of this thread.
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting.
+struct Counting;
+
+// SAFETY: every call is the system allocator's; counting touches a thread-local that allocates nothing.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // A thread that is ending has no count any more.
+        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A large instance that comes and goes between two small ones.
+const VERTICES: [u32; 3] = [500, 200_000, 300];
+
+/// Frames before those that count.
+const WARM_UP: usize = 20;
+/// Newest frames whose times are kept; memory for them is made while warming up.
+const KEPT: usize = 9;
+
+/// A plan of three instances, and what reads their results back when asked.
+struct Built {
+    execution: Execution,
+    imports: Imports,
+    shown: Shown,
+    ranges: Vec<ResultRange>,
+    wanted: Arc<Mutex<bool>>,
+    readback: Arc<Mutex<Option<Readback>>>,
+}
+
+fn build(context: &Context, relight: &mut Relight) -> Built {
+    let mut numbers = Numbers::new(101);
+    let light: Vec<[f32; 4]> = numbers.rgb(16).into_iter().map(|[r, g, b]| [r, g, b, 0.0]).collect();
+    let desc = BufferDesc { size: 256, usage: BufferUsageFlags::STORAGE_BUFFER };
+    let buffer = context.create_buffer(Label::new("host", "light"), &desc, Location::Upload).unwrap();
+    buffer.write(0, &light).unwrap();
+    let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    let state = Access::ComputeStorageRead;
+    let coefficients = graph.import_buffer("light", *buffer.desc(), state, state);
+    imports.buffer(&coefficients, &buffer);
+    let instance = |(i, &vertices): (usize, &u32)| {
+        let vectors = numbers.values(16 * vertices as usize);
+        let mesh = relight.add_mesh(context, &format!("mesh {i}"), vertices, Some(&vectors)).unwrap();
+        Instance { orientation: DQuat::from_rotation_y(i as f64).into(), ..Instance::new(mesh) }
+    };
+    let instances: Vec<_> = VERTICES.iter().enumerate().map(instance).collect();
+    let light = Light::Uniform { coefficients, rotation: DQuat::IDENTITY };
+    let frame: GraphFrame = Frame { light, instances, target: None };
+    let Relit { results, ranges, shown, .. } =
+        relight.add(context, &mut graph, &mut imports, &frame).unwrap();
+    let results = results.unwrap();
+    let (wanted, readback) = (Arc::new(Mutex::new(false)), Arc::new(Mutex::new(None)));
+    let mut pass = graph.pass("read back", PassKind::Transfer);
+    pass.read(&results, Access::TransferSource).side_effect();
+    let (asked, slot) = (Arc::clone(&wanted), Arc::clone(&readback));
+    pass.record(Box::new(move |recorder, resources| {
+        if *asked.lock().unwrap() {
+            *slot.lock().unwrap() = Some(recorder.read_back_buffer(resources.buffer(&results)?)?);
+        }
+        Ok(())
+    }));
+    let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
+    let execution = Execution::prepare(context, plan).unwrap();
+    Built { execution, imports, shown, ranges, wanted, readback }
+}
+
+/// Frames with the large instance shown where `shown` says so: allocations after warm-up, and the median device time of
+/// a frame, seconds.
+fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -> (u64, f64) {
+    let context = fixture.context();
+    let passes = built.execution.plan().steps().len() as u32;
+    let mut timing = Timing::new(context, passes, 0, KEPT).unwrap();
+    let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
+    let mut allocations = 0;
+    for frame in 0..WARM_UP + 30 {
+        let recorded = frames.frame(FrameSemaphores::default(), |commands| {
+            let before = COUNT.get();
+            built.shown.set(1, shown(frame)).unwrap();
+            // SAFETY: the loop's command buffer is recording and submitted once; imports are in their entry states.
+            let recorded =
+                unsafe { built.execution.record(context, commands, &built.imports, Some(&mut timing)) };
+            if frame >= WARM_UP {
+                allocations += COUNT.get() - before;
+            }
+            recorded
+        });
+        recorded.unwrap();
+    }
+    frames.finish().unwrap();
+    timing.collect().unwrap();
+    let times: Vec<f64> = timing.frames().map(|times| times.sum).collect();
+    (allocations, airglow_math::statistics::median(&times).unwrap())
+}
+
+/// The results of the plan as it stands.
+fn results(fixture: &Fixture, built: &mut Built) -> Vec<f32> {
+    *built.wanted.lock().unwrap() = true;
+    let mut frames = FrameLoop::new(fixture.device(), fixture.context()).unwrap();
+    let record = |commands| {
+        // SAFETY: the loop's command buffer is recording and submitted once; imports are in their entry states.
+        unsafe { built.execution.record(fixture.context(), commands, &built.imports, None) }
+    };
+    frames.frame(FrameSemaphores::default(), record).unwrap();
+    frames.finish().unwrap();
+    *built.wanted.lock().unwrap() = false;
+    built.readback.lock().unwrap().take().unwrap().read().unwrap()
+}
+
+#[test]
+fn an_instance_that_comes_and_goes_costs_nothing_when_away() {
+    let fixture = fixture();
+    let context = fixture.context();
+    for method in [Method::Compute, Method::Fragment] {
+        let mut relight = Relight::new(context, Settings { method, ..Settings::default() }).unwrap();
+        let mut built = build(context, &mut relight);
+        // The first frame copies the meshes to the device and gives their staging memory back.
+        let whole = results(&fixture, &mut built);
+        let work = |built: &Built| {
+            let counts = built.execution.counts().iter().copied().reduce(Counts::and).unwrap();
+            (counts.dispatches + counts.draws, counts.bound_bytes)
+        };
+        let made = context.pipelines_made();
+        let (allocations, time) = frames(&fixture, &mut built, |_| true);
+        let all = work(&built);
+        let (allocations_away, time_away) = frames(&fixture, &mut built, |_| false);
+        let away = work(&built);
+        let (allocations_changing, _) = frames(&fixture, &mut built, |frame| frame % 3 == 0);
+        println!(
+            "{method:?}: {:.3} ms and {all:?} dispatches or draws and bytes with it, {:.3} ms and {away:?} without",
+            1e3 * time,
+            1e3 * time_away
+        );
+        assert_eq!([allocations, allocations_away, allocations_changing], [0; 3], "{method:?}");
+        assert_eq!(context.pipelines_made(), made, "{method:?}: a pipeline was made");
+        assert_eq!(all.0 - away.0, 1, "{method:?}: {all:?} {away:?}");
+        assert!(all.1 - away.1 > 64 * u64::from(VERTICES[1]), "{method:?}: {all:?} {away:?}");
+
+        // The others keep their bits, and it has its own again when it is back.
+        built.shown.set(1, false).unwrap();
+        let without = results(&fixture, &mut built);
+        for range in [built.ranges[0], built.ranges[2]] {
+            let values = range.offset as usize / 4..(range.offset + range.size) as usize / 4;
+            assert!(without[values.clone()] == whole[values], "{method:?}: {range:?} changed");
+        }
+        built.shown.set(1, true).unwrap();
+        assert!(results(&fixture, &mut built) == whole, "{method:?}: it came back otherwise");
+        assert!(built.shown.set(3, true).unwrap_err().to_string().contains("below 3"));
+    }
+}
