@@ -26,10 +26,12 @@ pub struct Bench<'a> {
     pub run: &'a Run<'a>,
 }
 
-/// A ray through a medium with one light: a row of `airlight_rows.comp`. Airglow's axes, metres, relative to the eye.
+/// A ray through a medium with one light: a row of `airlight_rows.comp`. Airglow's axes, metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// The medium; where it thins, its level is that of the eye.
+    /// Where the ray begins.
+    pub eye: DVec3,
+    /// The medium.
     pub medium: Medium,
     /// The light.
     pub light: Light,
@@ -57,8 +59,8 @@ pub struct RowSettings {
     count: u32,
 }
 
-/// Rows of one dispatch.
-const ROWS: usize = 1 << 20;
+/// Rows of one dispatch: 40 MiB, below the least storage-buffer range of any device.
+const ROWS: usize = 1 << 18;
 
 /// Bindings of the rows: rows, airlight.
 pub const ROW_BINDINGS: [BindingDesc; 2] =
@@ -68,7 +70,7 @@ impl Ray {
     fn constants(&self, settings: &Settings) -> Result<RowConstants, FogError> {
         // A view of the whole sphere would do as well: with a bound of 0 nothing is left out but a dark light.
         let camera = Camera {
-            position: DVec3::ZERO,
+            position: self.eye,
             right: DVec3::X,
             up: DVec3::Y,
             forward: DVec3::NEG_Z,

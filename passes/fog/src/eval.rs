@@ -1,5 +1,7 @@
 //! The pass's own GPU code on rows of parameters, many rows a dispatch, beside the f64 reference.
 
+pub mod surface;
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
@@ -72,7 +74,7 @@ impl AirlightRow {
         let medium =
             Medium { extinction: [self.extinction; 3], albedo: [1.0; 3], phase: self.phase, thinning: None };
         let light = Light { radius: self.radius, ..light };
-        Ray { medium, light, direction: DVec3::Z, distance: self.distance }
+        Ray { eye: DVec3::ZERO, medium, light, direction: DVec3::Z, distance: self.distance }
     }
 
     /// The reference.

@@ -1,17 +1,18 @@
 //! `airglow stability`: extreme inputs and limits, beside the truth.
 
 mod again;
+#[cfg(feature = "fog")]
+mod fog;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use airglow::relight::stability::{self, Reproduce, Selection, Sweep};
 use airglow::relight::{Bench, Relight, Settings};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::cli::Global;
-use crate::commands::report::Pass;
 use crate::failure::{Failure, Outcome};
 use crate::files;
 use crate::host::device;
@@ -28,12 +29,13 @@ use again::Again;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   airglow stability relight
+  airglow stability fog
   airglow stability relight --case 'rotation: zero, order 6'
   airglow stability relight -o out/stability     the table and the sweeps' plots as a page")]
 pub struct Arguments {
     /// The pass.
-    #[arg(value_enum, default_value_t = Pass::Relight)]
-    pass: Pass,
+    #[arg(value_enum, default_value_t = Tried::Relight)]
+    pass: Tried,
     /// Write `stability.html` with the table and the sweeps' plots, and `stability.json`, into this folder.
     #[arg(long, short = 'o', value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -45,8 +47,30 @@ pub struct Arguments {
     case: Option<String>,
 }
 
+/// Passes that can be tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Tried {
+    /// Relighting by precomputed radiance transfer.
+    Relight,
+    /// Single scattering from lights inside a medium.
+    #[cfg(feature = "fog")]
+    Fog,
+}
+
+impl Tried {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Relight => "relight",
+            #[cfg(feature = "fog")]
+            Self::Fog => "fog",
+        }
+    }
+}
+
 #[derive(Serialize)]
 struct Table {
+    /// The pass that was tried.
+    pass: &'static str,
     machine: Machine,
     rows: Vec<Row>,
     sweeps: Vec<SweepTable>,
@@ -96,29 +120,16 @@ fn point_in_words([at, value, truth, error]: &[f64; 4]) -> String {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
-    let Pass::Relight = arguments.pass;
-    let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
-    let selection = Selection { large: !arguments.quick, only: arguments.case.as_deref() };
-    let again =
-        Again { folder: arguments.output.as_deref().unwrap_or(Path::new("")), device: &global.device };
-    let table = device::with(global, &requirements, |device| {
-        let run = device.bench();
-        let bench = Bench { context: device.context(), run: &run };
-        output.say("trying extreme inputs");
-        let rows = stability::cases(&bench, &selection).map_err(Failure::work)?;
-        output.say("sweeping limits");
-        let sweeps = stability::sweeps(&bench, &selection).map_err(Failure::work)?;
-        if rows.is_empty() && sweeps.is_empty() {
-            let name = arguments.case.as_deref().unwrap_or_default();
-            let mend = "`airglow stability relight` prints the names";
-            return Err(Failure::usage(format!("--case `{name}`: nothing has this name; {mend}")));
-        }
-        Ok(Table {
-            machine: device.machine(),
-            rows: rows.into_iter().map(|outcome| row(outcome, &again)).collect::<Outcome<_>>()?,
-            sweeps: sweeps.iter().map(|sweep| sweep_table(sweep, &again)).collect::<Outcome<_>>()?,
-        })
-    })?;
+    let table = match arguments.pass {
+        Tried::Relight => try_relight(arguments, global, output)?,
+        #[cfg(feature = "fog")]
+        Tried::Fog => fog::attempt(arguments, global, output)?,
+    };
+    if table.rows.is_empty() && table.sweeps.is_empty() {
+        let name = arguments.case.as_deref().unwrap_or_default();
+        let mend = format!("`airglow stability {}` prints the names", table.pass);
+        return Err(Failure::usage(format!("--case `{name}`: nothing has this name; {mend}")));
+    }
     if let Some(folder) = &arguments.output {
         write(folder, &table)?;
         output.say(format!("wrote {}", folder.join("stability.html").display()));
@@ -127,6 +138,27 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let failed = table.rows.iter().filter(|row| !row.pass).count()
         + table.sweeps.iter().filter(|sweep| !sweep.pass).count();
     if failed > 0 { Err(Failure::check(format!("{failed} rows or sweeps fail"))) } else { Ok(()) }
+}
+
+fn try_relight(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Table> {
+    let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
+    let selection = Selection { large: !arguments.quick, only: arguments.case.as_deref() };
+    let again =
+        Again { folder: arguments.output.as_deref().unwrap_or(Path::new("")), device: &global.device };
+    device::with(global, &requirements, |device| {
+        let run = device.bench();
+        let bench = Bench { context: device.context(), run: &run };
+        output.say("trying extreme inputs");
+        let rows = stability::cases(&bench, &selection).map_err(Failure::work)?;
+        output.say("sweeping limits");
+        let sweeps = stability::sweeps(&bench, &selection).map_err(Failure::work)?;
+        Ok(Table {
+            pass: arguments.pass.name(),
+            machine: device.machine(),
+            rows: rows.into_iter().map(|outcome| row(outcome, &again)).collect::<Outcome<_>>()?,
+            sweeps: sweeps.iter().map(|sweep| sweep_table(sweep, &again)).collect::<Outcome<_>>()?,
+        })
+    })
 }
 
 fn row(outcome: stability::Outcome, again: &Again<'_>) -> Outcome<Row> {
@@ -197,11 +229,13 @@ fn write(folder: &Path, table: &Table) -> Outcome {
 
 fn page(table: &Table) -> Outcome<String> {
     let mut html = format!(
-        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>airglow: stability of relight</title>\
+        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>airglow: stability of {}</title>\
          <style>body{{font:15px/1.5 system-ui,sans-serif;max-width:78em;margin:2em auto;padding:0 1em}}\
          table{{border-collapse:collapse}}td,th{{border:1px solid #ccc;padding:.2em .6em}}\
-         .fail{{background:#fbdcd8}}</style></head><body><h1>Stability of relight</h1><p>{} ({})</p>\
+         .fail{{background:#fbdcd8}}</style></head><body><h1>Stability of {}</h1><p>{} ({})</p>\
          <table><tr><th>input</th><th>in words</th><th>GPU</th><th>truth</th><th>error</th><th>bound</th><th></th><th>again</th></tr>",
+        table.pass,
+        table.pass,
         escape(&table.machine.device),
         escape(&table.machine.driver)
     );
@@ -286,7 +320,7 @@ mod tests {
         let image = airglow_scene::image_io::read_image(&file).unwrap();
         assert!(image.pixels[0] == [1.5; 3] && image.pixels[1][0].is_nan(), "{image:?}");
         let rows = vec![environment];
-        let text = text(&Table { machine: machine(), rows, sweeps: Vec::new() });
+        let text = text(&Table { pass: "relight", machine: machine(), rows, sweeps: Vec::new() });
         assert!(text.contains("result value 3: 1.00000000e0, truth value 3: 2.00000000e0"), "{text}");
         assert!(text.contains("again  printf 'order\\n2\\n'"), "{text}");
     }
