@@ -14,8 +14,8 @@ use crate::rotation::Orientation;
 /// forward, u growing to the right, v down, whatever the axes of the host's world.
 #[derive(Clone, Copy, Debug)]
 pub struct Environment<I> {
-    /// The image; only the first mip is read, texel by texel, without a sampler. Any float format; finite and not
-    /// negative ([`check_environment`](crate::check_environment)), at most 1e6.
+    /// The image; only the first mip is read, texel by texel, without a sampler. Any float format; at most 1e6 and not
+    /// negative ([`check_environment`](crate::check_environment)); a component that is not finite counts as 0.
     pub image: I,
     /// Texels of a row.
     pub width: u32,

@@ -292,3 +292,25 @@ fn the_plan_is_as_written_down() {
         assert_text(&golden, &built.plan.text());
     }
 }
+
+/// A live environment is not looked at by the CPU: what is not finite in it stays where it is.
+#[test]
+fn a_bad_texel_stays_local() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let colours = |texels: &[[f32; 3]]| {
+        let mut relight = Relight::new(context, Settings::default()).unwrap();
+        let (mesh, _) = mesh(context, &mut relight, 200, 2);
+        let sky = sky(&fixture, texels);
+        run_once(&fixture, build(context, &mut relight, &sky, 1, vec![Instance::new(mesh)]))
+    };
+    let good = texels(3);
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let (mut broken, mut mended) = (good.clone(), good.clone());
+        (broken[137][1], mended[137][1]) = (bad, 0.0);
+        let (found, expected) = (colours(&broken), colours(&mended));
+        assert!(found.iter().all(|value| value.is_finite()), "{bad} reached a vertex");
+        assert_eq!(found, expected, "{bad} is not black");
+        assert_ne!(found, colours(&good), "the texel is seen");
+    }
+}

@@ -3,7 +3,8 @@
 // First half of the exact projection of an equirectangular environment, constant on each texel, on the SH basis.
 // The basis separates into a function of the row and one of the column, so its integral over a texel does too.
 // One workgroup a row: the sums over its columns of radiance times the column integrals for m = 1 - ORDER to
-// ORDER - 1, in a fixed order: runs of RUN texels, then their sums, then a tree.
+// ORDER - 1, in a fixed order: runs of RUN texels, then their sums, then a tree. What is not finite counts as 0, so
+// that a bad texel of a live environment darkens its own solid angle and nothing else.
 //
 // ORDER  1-6
 
@@ -32,6 +33,14 @@ layout(push_constant) uniform Size {
 
 shared vec4 partial[AZIMUTHS * WORKGROUP];
 
+// The components that are finite, 0 for the others. An exponent of all ones is infinity or NaN; comparisons with NaN
+// may be optimised away.
+vec3 finite(vec3 radiance)
+{
+    uvec3 exponent = floatBitsToUint(radiance) & 0x7f800000u;
+    return mix(radiance, vec3(0.0), equal(exponent, uvec3(0x7f800000u)));
+}
+
 void main()
 {
     uint row = gl_WorkGroupID.x;
@@ -44,7 +53,7 @@ void main()
         for (uint k = 0u; k < uint(RUN); ++k) {
             uint column = first + k * uint(WORKGROUP);
             if (column < size.width) {
-                vec3 radiance = texelFetch(environment, ivec2(column, row), 0).rgb;
+                vec3 radiance = finite(texelFetch(environment, ivec2(column, row), 0).rgb);
                 for (uint m = 0u; m < uint(AZIMUTHS); ++m) {
                     run[m] = fma(vec3(columns.integrals[column * uint(AZIMUTHS) + m]), radiance, run[m]);
                 }
