@@ -1,0 +1,213 @@
+//! This room inside a host with a device of its own, by both roads; and what Rust states is what the shaders have.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+
+use airglow_fog::{
+    ACCESSES, BINDINGS, Bindings, Camera, Fog, Frame, Light, Medium, Pass, PhaseKind, Prepared, Preset,
+    Settings, View,
+};
+use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
+use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, PassKind};
+use airglow_math::World;
+use airglow_tests::conformance::{Content, Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::reflect::Module;
+use glam::DVec3;
+
+const SIZE: [u32; 2] = [40, 24];
+const PIXELS: usize = 40 * 24;
+
+fn view() -> View {
+    let camera = Camera {
+        position: DVec3::new(0.0, 1.7, 8.0),
+        right: DVec3::X,
+        up: DVec3::Y,
+        forward: DVec3::NEG_Z,
+        edges: [-0.8, 0.8, -0.45, 0.45],
+    };
+    let lamp = Light { radius: 0.1, ..Light::point(DVec3::new(1.0, 3.0, 0.0), [40.0, 30.0, 15.0]) };
+    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights: vec![lamp] }
+}
+
+/// Fog between a host's draw and a host's picture, which is copied to a buffer of the host's.
+struct Fogged {
+    fog: Fog,
+    pass: Option<Pass>,
+}
+
+fn image(format: Format, usage: ImageUsageFlags) -> ImageDesc {
+    ImageDesc { usage: usage | ImageUsageFlags::TRANSFER_DST, ..ImageDesc::new_2d(SIZE[0], SIZE[1], format) }
+}
+
+impl Room for Fogged {
+    fn requirements(&self) -> Requirements {
+        Fog::requirements(self.fog.settings())
+    }
+
+    fn resources(&self) -> Vec<HostResource> {
+        let hdr = Format::R32G32B32A32_SFLOAT;
+        let surface: Vec<u8> = (0..4 * PIXELS).flat_map(|i| (0.01 * i as f32).to_le_bytes()).collect();
+        // The upper rows show no surface.
+        let depth = |pixel: usize| {
+            if pixel < PIXELS / 3 { 1.0_f32 } else { 0.9 + 0.09 * pixel as f32 / PIXELS as f32 }
+        };
+        let depth: Vec<u8> = (0..PIXELS).flat_map(|pixel| depth(pixel).to_le_bytes()).collect();
+        let usage = BufferUsageFlags::TRANSFER_SRC | BufferUsageFlags::TRANSFER_DST;
+        let copy = BufferDesc { size: 16 * PIXELS as u64, usage };
+        let target = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
+        let read = ImageUsageFlags::SAMPLED | ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let resource = |name, content, entry: Access, exit: Access| HostResource {
+            name,
+            content,
+            entry: entry.into(),
+            exit: exit.into(),
+        };
+        let sampled = Access::FragmentSampled;
+        vec![
+            resource(
+                "surface",
+                Content::Image(image(hdr, ImageUsageFlags::SAMPLED), surface),
+                sampled,
+                sampled,
+            ),
+            resource(
+                "depth",
+                Content::Image(image(Format::D32_SFLOAT, read), depth),
+                Access::FragmentSampledDepth,
+                Access::FragmentSampledDepth,
+            ),
+            resource(
+                "picture",
+                Content::Image(image(hdr, target), vec![0xff; 16 * PIXELS]),
+                Access::ColorAttachmentWrite,
+                Access::TransferSource,
+            ),
+            resource(
+                "copy",
+                Content::Buffer(copy, vec![0; 16 * PIXELS]),
+                Access::TransferDestination,
+                Access::TransferSource,
+            ),
+        ]
+    }
+
+    fn add(
+        &mut self,
+        _: &Context,
+        graph: &mut Graph<Record>,
+        _: &mut Imports,
+        host: &[Named],
+    ) -> Result<(), Refusal> {
+        let [Named::Image(surface), Named::Image(depth), Named::Image(picture), Named::Buffer(copy)] = host
+        else {
+            return Err("other resources".into());
+        };
+        let frame =
+            Frame { size: SIZE, surface: *surface, depth: *depth, target: Some(*picture), view: view() };
+        let fogged = self.fog.add(graph, &frame)?;
+        let mut pass = graph.pass("copy", PassKind::Transfer);
+        pass.read(&fogged.colour, Access::TransferSource);
+        let (colour, copy) = (fogged.colour, pass.write(*copy, Access::TransferDestination));
+        pass.record(Box::new(move |recorder, resources| {
+            recorder.copy_image_to_buffer(&resources.view(&colour)?, resources.buffer(&copy)?)
+        }));
+        Ok(())
+    }
+
+    fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
+        let frame = Frame { size: SIZE, surface: (), depth: (), target: Some(()), view: view() };
+        let Prepared::Pass(pass) = self.fog.prepare(&frame)? else { return Err("left out".into()) };
+        self.pass = Some(pass);
+        let [surface, depth, picture] = ACCESSES.map(|(_, access)| access);
+        Ok(vec![
+            Some((surface, surface)),
+            Some((depth, depth)),
+            Some((picture, Access::TransferSource)),
+            Some((Access::TransferDestination, Access::TransferDestination)),
+        ])
+    }
+
+    fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
+        let (
+            Some(pass),
+            [Given::Image(surface), Given::Image(depth), Given::Image(picture), Given::Buffer(copy)],
+        ) = (&self.pass, host)
+        else {
+            return Err("other resources".into());
+        };
+        let target = picture.full_view()?;
+        let bindings = Bindings { surface: surface.full_view()?, depth: depth.full_view()?, target };
+        pass.record(recorder, &bindings)?;
+        recorder.transition(picture, ACCESSES[2].1, Access::TransferSource)?;
+        Ok(recorder.copy_image_to_buffer(&picture.full_view()?, copy)?)
+    }
+}
+
+#[test]
+fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads() {
+    let settings = Settings::default();
+    let make = |context: &Context| Fogged { fog: Fog::new(context, settings).unwrap(), pass: None };
+    let outputs = conform(make, &Fog::requirements(&settings), &Options::default());
+    let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let picture: Vec<f32> = outputs[0].chunks_exact(4).map(value).collect();
+    assert_eq!(picture.len(), 4 * PIXELS);
+    assert!(
+        picture.chunks_exact(4).all(|texel| texel[..3].iter().all(|value| value.is_finite() && *value > 0.0))
+    );
+    // No surface, no light of it: the airlight is warm, the surface there was not.
+    assert!(picture[0] > picture[2], "{:?}", &picture[..4]);
+}
+
+#[test]
+fn what_rust_states_is_what_the_shaders_have() {
+    for module in ["fog/airlight.FOG_TAPS6.isotropic.spv", "fog/airlight.FOG_HEIGHT.FOG_TAPS16.draine.spv"] {
+        Module::load(module).unwrap().assert_bindings(&BINDINGS);
+    }
+    for module in
+        ["fog/airlight_rows.FOG_TAPS6.isotropic.spv", "fog/airlight_rows_height.FOG_TAPS16.isotropic.spv"]
+    {
+        Module::load(module).unwrap().assert_bindings(&airglow_fog::bench::ROW_BINDINGS);
+    }
+}
+
+#[test]
+fn without_extinction_nothing_is_there() {
+    let mut graph = Graph::<Record>::new();
+    let desc = image(Format::R32G32B32A32_SFLOAT, ImageUsageFlags::SAMPLED);
+    let fixture = airglow_tests::device::fixture_with(&Fog::requirements(&Settings::default()));
+    for phase in [PhaseKind::HenyeyGreenstein, PhaseKind::Isotropic, PhaseKind::Polynomial, PhaseKind::Draine]
+    {
+        for (height, preset) in [(false, Preset::Default), (true, Preset::Reference)] {
+            let settings = Settings { phase, height, preset, ..Settings::default() };
+            let fog = Fog::new(fixture.context(), settings).unwrap();
+            let sampled = Access::FragmentSampled;
+            let surface = graph.import_image("surface", desc, sampled, sampled);
+            let depth = graph.import_image("depth", desc, sampled, sampled);
+            let mut view = view();
+            view.medium.extinction = [0.0; 3];
+            let fogged =
+                fog.add(&mut graph, &Frame { size: SIZE, surface, depth, target: None, view }).unwrap();
+            assert_eq!(fogged.colour, surface);
+            assert!(fogged.control.is_none());
+        }
+    }
+    let plan = graph.compile(&fixture.context().graph_limits()).unwrap();
+    assert!(plan.steps().is_empty() && plan.left_out()[0].why.contains("no extinction"), "{}", plan.text());
+}
+
+#[test]
+fn a_light_out_of_reach_is_left_out_and_the_control_counts_it() {
+    let fixture = airglow_tests::device::fixture_with(&Fog::requirements(&Settings::default()));
+    let fog = Fog::new(fixture.context(), Settings::default()).unwrap();
+    let mut view = view();
+    let lamp = view.lights[0];
+    view.lights.push(Light { position: DVec3::new(0.0, 2.0, 900.0), ..lamp });
+    view.lights.push(Light { intensity: [0.0; 3], ..lamp });
+    let frame = Frame { size: SIZE, surface: (), depth: (), target: None, view: view.clone() };
+    let Prepared::Pass(pass) = fog.prepare(&frame).unwrap() else { panic!("there is a medium") };
+    assert_eq!((pass.control.counts().evaluated, pass.control.counts().left_out), (1, 2));
+    view.lights.truncate(1);
+    assert_eq!(pass.control.set(&view).unwrap().left_out, 0);
+    view.medium.extinction = [0.0; 3];
+    assert!(pass.control.set(&view).unwrap_err().to_string().contains("declare the frame anew"));
+}
