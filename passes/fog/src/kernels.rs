@@ -32,6 +32,18 @@ static ROWS_HEIGHT: [&[u8]; 2] = [
 ];
 static RECTANGLE: &[u8] = include_bytes!("../../../shaders/spirv/fog/rectangle.spv").as_slice();
 
+/// By preset.
+static LOBE_TABLE: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/lobe_table.FOG_LOBE_SIZE64.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/lobe_table.FOG_LOBE_SIZE256.spv").as_slice(),
+];
+/// By preset.
+static SURFACE_ROWS: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/surface_rows.FOG_LOBE_SIZE64.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/surface_rows.FOG_LOBE_SIZE256.spv").as_slice(),
+];
+static SPREAD_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/spread_rows.spv").as_slice();
+
 /// Bindings of the airlight pass: the frame, the surfaces' radiance, their depth.
 pub const BINDINGS: [BindingDesc; 3] = [
     BindingDesc::new(0, BindingKind::UniformBuffer),
@@ -74,6 +86,21 @@ pub(crate) fn rows(rows: Rows) -> Vec<u32> {
         Rows::Homogeneous(preset, phase) => ROWS[preset as usize][phase as usize],
         Rows::Thinning(preset) => ROWS_HEIGHT[preset as usize],
     })
+}
+
+/// Fills tables of lobes.
+pub(crate) fn lobe_table(preset: Preset) -> Vec<u32> {
+    words(LOBE_TABLE[preset as usize])
+}
+
+/// The glow through lobes of rows of parameters.
+pub(crate) fn surface_rows(preset: Preset) -> Vec<u32> {
+    words(SURFACE_ROWS[preset as usize])
+}
+
+/// The point spread function of rows of parameters.
+pub(crate) fn spread_rows() -> Vec<u32> {
+    words(SPREAD_ROWS)
 }
 
 /// One triangle over the viewport.

@@ -27,6 +27,8 @@ use crate::output::Output;
   sh-rotate       order, f, qx, qy, qz, qw -> rotated   rotated(s) = f(q^-1 s q)
   fog-airlight    beta, d_sv, d_vp, gamma -> radiance   also light_radius; phase (isotropic, hg:g, poly:w0;w1;w2;w3,
                   draine:g;alpha); method (default, reference), or --set method=reference for all rows
+  fog-surface     t_sp, theta, n -> g                   G_n; n = 1 is Lambert's lobe; also method (default, reference)
+  fog-psf         t_sv, gamma -> psf                    also method (exact, factored)
 
 Example:
   printf 'order,f,qx,qy,qz,qw\\n2,1;0;0.5;0,0,1,0,1\\n' > rows.csv
@@ -61,6 +63,12 @@ pub enum Evaluator {
     /// Airlight along a ray by a light of 1 W/sr, in a medium of albedo 1.
     #[cfg(feature = "fog")]
     FogAirlight,
+    /// The glow of a light through a reflecting lobe.
+    #[cfg(feature = "fog")]
+    FogSurface,
+    /// The point spread function of fog.
+    #[cfg(feature = "fog")]
+    FogPsf,
 }
 
 impl Evaluator {
@@ -71,6 +79,10 @@ impl Evaluator {
             Self::ShRotate => &["order", "f", "qx", "qy", "qz", "qw"],
             #[cfg(feature = "fog")]
             Self::FogAirlight => &["beta", "d_sv", "d_vp", "gamma"],
+            #[cfg(feature = "fog")]
+            Self::FogSurface => &["t_sp", "theta", "n"],
+            #[cfg(feature = "fog")]
+            Self::FogPsf => &["t_sv", "gamma"],
         }
     }
 
@@ -81,6 +93,10 @@ impl Evaluator {
             Self::ShRotate => &["rotated"],
             #[cfg(feature = "fog")]
             Self::FogAirlight => &["radiance"],
+            #[cfg(feature = "fog")]
+            Self::FogSurface => &["g"],
+            #[cfg(feature = "fog")]
+            Self::FogPsf => &["psf"],
         }
     }
 
@@ -89,7 +105,7 @@ impl Evaluator {
             Self::EnvironmentSh => &["image"],
             Self::ShProduct | Self::ShRotate => &[],
             #[cfg(feature = "fog")]
-            Self::FogAirlight => &["method"],
+            Self::FogAirlight | Self::FogSurface | Self::FogPsf => &["method"],
         }
     }
 }
@@ -125,6 +141,16 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::FogAirlight => {
                 let bench = airglow::fog::Bench { context: device.context(), run: &run };
                 eval::fog::airlight(&bench, &table, &settings)
+            }
+            #[cfg(feature = "fog")]
+            Evaluator::FogSurface => {
+                let bench = airglow::fog::Bench { context: device.context(), run: &run };
+                eval::fog::surface(&bench, &table, &settings)
+            }
+            #[cfg(feature = "fog")]
+            Evaluator::FogPsf => {
+                let bench = airglow::fog::Bench { context: device.context(), run: &run };
+                eval::fog::spread(&bench, &table, &settings)
             }
         }
     })?;

@@ -1,7 +1,8 @@
-//! The evaluator of the fog pass: `fog-airlight`.
+//! The evaluators of the fog pass: `fog-airlight`, `fog-surface`, `fog-psf`.
 
+use airglow::fog::eval::surface::{self, SpreadRow, SurfaceRow};
 use airglow::fog::eval::{self, AirlightRow, Evaluated};
-use airglow::fog::{Bench, Phase, Preset};
+use airglow::fog::{Bench, FogError, Phase, Preset};
 
 use super::table::Table;
 use super::{Columns, Settings, accepted, number, rejoin};
@@ -26,9 +27,63 @@ pub fn airlight(bench: &Bench<'_>, table: &Table, settings: &Settings) -> Outcom
     };
     let (places, rows) = accepted((0..table.row_count()).map(read).collect());
     let results = eval::airlight(bench, &rows).map_err(Failure::work)?;
+    Ok(joined(places, results))
+}
+
+/// `fog-surface`: t_sp, theta, n and, if there, method in, g out.
+pub fn surface(bench: &Bench<'_>, table: &Table, settings: &Settings) -> Outcome<Columns> {
+    let method = settings.get("method").map_or("default", String::as_str);
+    fineness(method).map_err(|problem| Failure::usage(format!("--set method: {problem}")))?;
+    let read = |row| {
+        Ok(SurfaceRow {
+            optical_distance: table.number(row, "t_sp")?,
+            theta: table.number(row, "theta")?,
+            exponent: table.number(row, "n")?,
+            preset: fineness(table.word(row, "method", method)?)?,
+        })
+    };
+    let (places, rows) = accepted((0..table.row_count()).map(read).collect());
+    Ok(joined(places, surface::surface(bench, &rows).map_err(Failure::work)?))
+}
+
+/// `fog-psf`: t_sv, gamma and, if there, method in, psf out.
+pub fn spread(bench: &Bench<'_>, table: &Table, settings: &Settings) -> Outcome<Columns> {
+    let method = settings.get("method").map_or("exact", String::as_str);
+    factored(method).map_err(|problem| Failure::usage(format!("--set method: {problem}")))?;
+    let read = |row| {
+        Ok(SpreadRow {
+            optical_distance: table.number(row, "t_sv")?,
+            gamma: table.number(row, "gamma")?,
+            factored: factored(table.word(row, "method", method)?)?,
+        })
+    };
+    let (places, rows) = accepted((0..table.row_count()).map(read).collect());
+    Ok(joined(places, surface::spread(bench, &rows).map_err(Failure::work)?))
+}
+
+/// Rows of one number each.
+fn joined(places: Vec<Result<(), String>>, results: Vec<Result<Evaluated, FogError>>) -> Columns {
     let rows =
         rejoin(places, results, |Evaluated { value, reference }| (vec![vec![value]], vec![vec![reference]]));
-    Ok(Columns { rows })
+    Columns { rows }
+}
+
+/// How fine a table of a lobe is.
+fn fineness(text: &str) -> Result<Preset, String> {
+    match text {
+        "default" | "table:64" => Ok(Preset::Default),
+        "reference" | "table:256" => Ok(Preset::Reference),
+        _ => Err(format!("method is `{text}`; expected default (table:64) or reference (table:256)")),
+    }
+}
+
+/// Whether the point spread function is taken apart.
+fn factored(text: &str) -> Result<bool, String> {
+    match text {
+        "exact" => Ok(false),
+        "factored" => Ok(true),
+        _ => Err(format!("method is `{text}`; expected exact or factored")),
+    }
 }
 
 /// `isotropic`, `hg:g`, `poly:w0;w1;w2;w3` or `draine:g;alpha`.
@@ -72,5 +127,9 @@ mod tests {
         }
         assert_eq!(preset("taps:16"), Ok(Preset::Reference));
         assert!(preset("table:64").unwrap_err().contains("expected default"));
+        assert_eq!(fineness("table:256"), Ok(Preset::Reference));
+        assert!(fineness("taps:6").unwrap_err().contains("expected default"));
+        assert_eq!(factored("factored"), Ok(true));
+        assert!(factored("").unwrap_err().contains("expected exact"));
     }
 }
