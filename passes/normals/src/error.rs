@@ -1,5 +1,6 @@
 //! What this room refuses, and the mend.
 
+use airglow_gpu::GpuError;
 use airglow_math::MathError;
 
 /// Why an input was refused.
@@ -42,6 +43,19 @@ pub enum NormalsError {
         /// What is accepted, in words.
         range: &'static str,
     },
+    /// A chain that does not fit its budget.
+    #[error("normals: the chain takes {bytes} bytes of {budget}: {mend}")]
+    Budget {
+        /// What it takes.
+        bytes: u64,
+        /// What it may take.
+        budget: u64,
+        /// The next setting that fits.
+        mend: String,
+    },
+    /// A refusal of the device layer.
+    #[error("normals: {0}")]
+    Gpu(#[from] GpuError),
     /// A refusal of the mathematics.
     #[error("normals: {0}")]
     Math(#[from] MathError),

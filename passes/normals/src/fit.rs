@@ -33,7 +33,7 @@ impl Default for FitSettings {
 }
 
 impl FitSettings {
-    fn check(&self) -> Result<(), NormalsError> {
+    pub(crate) fn check(&self) -> Result<(), NormalsError> {
         check_count(self.lobes)?;
         let within = |what, value: f64, least: f64, most: f64, range| {
             let inside = (least..=most).contains(&value);

@@ -3,7 +3,7 @@
 //! Han, Sun, Ramamoorthi and Grinspun, "Frequency Domain Normal Map Filtering" (SIGGRAPH 2007); Sun 2008, section 5.1.
 //! The mean radiance of the normals under a texel is the BRDF convolved with their distribution (eq. 5.6). This crate holds
 //! the truth, [`reference::radiance`], and on the CPU what may be kept of a distribution: a [`Mixture`] of lobes,
-//! [`Harmonics`], and the [`rivals`].
+//! [`Harmonics`], and the [`rivals`]. [`Bench`] runs the kernels that fit mixtures to every level of a map and shade them.
 //!
 //! ```
 //! use airglow_normals::{Brdf, Directions, FitSettings, NormalMap, fit, reference, shade};
@@ -21,10 +21,13 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod bench;
 mod brdf;
+pub mod chain;
 mod error;
 mod fit;
 mod harmonics;
+pub mod kernels;
 mod map;
 mod mixture;
 pub mod reference;
@@ -32,6 +35,7 @@ pub mod rivals;
 pub mod shade;
 pub mod vmf;
 
+pub use bench::Bench;
 pub use brdf::{Brdf, Directions};
 pub use error::NormalsError;
 pub use fit::{FitSettings, fit, fit_from};

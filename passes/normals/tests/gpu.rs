@@ -1,0 +1,167 @@
+//! The kernels on the device against the f64 reference of the same formulas, and against the truth.
+
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
+mod common;
+
+use airglow_gpu::{GpuError, Recorder, Requirements};
+use airglow_math::statistics::relative_l2;
+use airglow_normals::bench::{Bench, LevelLobes, Row};
+use airglow_normals::{Brdf, FitSettings, Mixture, NormalMap, WeightedLobe, fit, reference, shade};
+use airglow_tests::device::fixture_with;
+use common::{Random, directions};
+use glam::DVec3;
+
+const BRDFS: [Brdf; 8] = [
+    Brdf::Lambert,
+    Brdf::BlinnPhong { exponent: 1.0 },
+    Brdf::BlinnPhong { exponent: 50.0 },
+    Brdf::BlinnPhong { exponent: 10_000.0 },
+    Brdf::Ggx { alpha: 0.02 },
+    Brdf::Ggx { alpha: 0.1 },
+    Brdf::Ggx { alpha: 0.3 },
+    Brdf::Ggx { alpha: 1.0 },
+];
+
+fn with_bench<T>(test: impl FnOnce(&Bench<'_>) -> T) -> T {
+    let fixture = fixture_with(&Requirements::engine());
+    let run = |record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>| {
+        fixture.device().run(fixture.context(), |recorder| record(recorder))
+    };
+    test(&Bench { context: fixture.context(), run: &run })
+}
+
+fn wide(lobe: [f32; 4]) -> WeightedLobe {
+    let [x, y, z, weight] = lobe.map(f64::from);
+    WeightedLobe { weight, moment: DVec3::new(x, y, z) }
+}
+
+/// The mixture of a texel as the device left it.
+fn texel(level: &LevelLobes, lobes: usize, x: usize, y: usize) -> Mixture {
+    let at = (y * level.size[0] + x) * lobes;
+    Mixture::new(level.lobes[at..at + lobes].iter().map(|&lobe| wide(lobe)).collect()).unwrap()
+}
+
+#[test]
+fn shading_is_that_of_the_reference() {
+    let map = common::groove(64);
+    let mut random = Random(3);
+    for brdf in BRDFS {
+        let mut rows = Vec::new();
+        for i in 0..200 {
+            let level = 1 + i % 5;
+            let [width, height] = map.size(level);
+            let footprint = map.footprint(level, random.below(width), random.below(height)).unwrap();
+            let mixture = fit(&footprint, &FitSettings { lobes: 1 + i % 6, ..Default::default() }).unwrap();
+            // What f32 holds of the lobes is the input of both.
+            let lobes = mixture.lobes().iter().map(|lobe| wide(lobe.packed())).collect();
+            rows.push(Row { lobes, brdf, directions: directions(i, &footprint, 0.1, &mut random) });
+        }
+        let truth =
+            |row: &Row| shade::radiance(&Mixture::new(row.lobes.clone()).unwrap(), brdf, row.directions);
+        let truths: Vec<f64> = rows.iter().map(truth).collect();
+        let values = with_bench(|bench| bench.radiance(&rows).unwrap());
+        let values: Vec<f64> = values.into_iter().map(f64::from).collect();
+        let error = relative_l2(&values, &truths).unwrap();
+        println!("{brdf:?}: {error:.1e}");
+        assert!(error < 1e-3, "{brdf:?}: {error:e}");
+    }
+}
+
+/// Every level of a chain: weights and moments kept, radiance as near to the truth as the reference's own mixtures.
+fn check_chain(name: &str, map: &NormalMap, lobes: usize, slack: f64) {
+    let settings = FitSettings { lobes, iterations: 8, ..Default::default() };
+    let levels = with_bench(|bench| bench.build(map, &settings, u64::MAX).unwrap());
+    assert_eq!(levels.len(), map.levels() - 1);
+    // A texel that two coarser ones share is cut by area, wherever its lobes lie in it.
+    let kept = if map.size(0)[0].is_power_of_two() { 1e-5 } else { 5e-3 };
+    let mut random = Random(9);
+    let brdf = Brdf::BlinnPhong { exponent: 50.0 };
+    let (mut device, mut host, mut truths) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, level) in levels.iter().enumerate() {
+        for _ in 0..6 {
+            let (x, y) = (random.below(level.size[0]), random.below(level.size[1]));
+            let footprint = map.footprint(i + 1, x, y).unwrap();
+            let mixture = texel(level, lobes, x, y);
+            let weight: f64 = mixture.lobes().iter().map(|lobe| lobe.weight).sum();
+            let moment: DVec3 = mixture.lobes().iter().map(|lobe| lobe.moment).sum();
+            let mean = airglow_normals::rivals::mean(&footprint);
+            assert!((weight - 1.0).abs() < 1e-5, "{name}, level {}: {mixture:?}", i + 1);
+            assert!((moment - mean).length() < kept, "{name}, level {}: {moment} is not {mean}", i + 1);
+            let ours = fit(&footprint, &settings).unwrap();
+            for row in 0..8 {
+                let directions = directions(row, &footprint, 0.14, &mut random);
+                truths.push(reference::radiance(&footprint, brdf, directions));
+                device.push(shade::radiance(&mixture, brdf, directions));
+                host.push(shade::radiance(&ours, brdf, directions));
+            }
+        }
+    }
+    let [device, host] = [device, host].map(|values| relative_l2(&values, &truths).unwrap());
+    println!("{name}, {lobes} lobes: {:.2}% on the device, {:.2}% in f64", 100.0 * device, 100.0 * host);
+    assert!(device < 1.3 * host + slack, "{name}, {lobes} lobes: {device} and {host}");
+}
+
+#[test]
+fn chains_are_as_good_as_the_references() {
+    check_chain("groove", &common::groove(128), 4, 0.005);
+    check_chain("groove", &common::groove(64), 2, 0.005);
+    check_chain("weave", &common::weave(128), 4, 0.005);
+    check_chain("weave", &common::weave(64), 6, 0.005);
+    check_chain("grain", &common::grain(128), 4, 0.005);
+    check_chain("grain", &common::grain(64), 1, 0.005);
+    check_chain("grain", &common::grain(95), 6, 0.005);
+}
+
+#[test]
+fn maps_of_any_size_and_content_give_finite_lobes() {
+    let vectors = |width: usize, height: usize| -> Vec<[f32; 3]> {
+        let all =
+            [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0; 3], [f32::NAN; 3], [0.0, 0.6, -0.8]];
+        (0..width * height).map(|i| all[i * i % 6]).collect()
+    };
+    with_bench(|bench| {
+        for (width, height) in [(1, 1), (1, 9), (13, 1), (5, 3), (31, 31), (100, 37)] {
+            let map = NormalMap::from_vectors(width, height, &vectors(width, height)).unwrap();
+            let settings = FitSettings { iterations: 32, ..Default::default() };
+            let levels = bench.build(&map, &settings, u64::MAX).unwrap();
+            assert_eq!(
+                levels,
+                bench.build(&map, &settings, u64::MAX).unwrap(),
+                "the same map, the same bits"
+            );
+            for level in &levels {
+                for lobes in level.lobes.chunks(4) {
+                    let weight: f32 = lobes.iter().map(|lobe| lobe[3]).sum();
+                    assert!((weight - 1.0).abs() < 1e-5, "{width} x {height}: {lobes:?}");
+                    assert!(lobes.iter().flatten().all(|value| value.is_finite()), "{lobes:?}");
+                }
+            }
+        }
+        let flat = NormalMap::from_vectors(8, 8, &[[0.6, 0.0, 0.8]; 64]).unwrap();
+        for level in bench.build(&flat, &FitSettings::default(), u64::MAX).unwrap() {
+            assert!((level.lobes[0][3] - 1.0).abs() < 1e-6, "{:?}", &level.lobes[..4]);
+        }
+        assert!(bench.build(&flat, &FitSettings { lobes: 3, ..Default::default() }, u64::MAX).is_err());
+        assert!(bench.build(&flat, &FitSettings { iterations: 33, ..Default::default() }, u64::MAX).is_err());
+        assert!(bench.build(&flat, &FitSettings::default(), 100).is_err());
+    });
+}
+
+/// `cargo test -p airglow-normals --test gpu -- --ignored --nocapture` prints how long a large chain takes.
+#[test]
+#[ignore = "a measurement"]
+fn time_of_a_large_chain() {
+    let map = common::weave(1024);
+    for lobes in [1, 4] {
+        for iterations in [8, 16] {
+            let settings = FitSettings { lobes, iterations, ..Default::default() };
+            let begin = std::time::Instant::now();
+            with_bench(|bench| bench.build(&map, &settings, u64::MAX).unwrap());
+            println!(
+                "1024 x 1024, {lobes} lobes, {iterations} steps: {:.2} s",
+                begin.elapsed().as_secs_f64()
+            );
+        }
+    }
+}
