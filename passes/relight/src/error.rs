@@ -69,6 +69,20 @@ pub enum RelightError {
         /// What is accepted, in words.
         allowed: String,
     },
+    /// A mesh that the memory budget has no room for.
+    #[error(
+        "relight: the vectors of \"{name}\" take {size} bytes and the memory budget has {left} left: {mend}"
+    )]
+    Budget {
+        /// The mesh.
+        name: String,
+        /// Bytes needed, those of the copy to the device included.
+        size: u64,
+        /// Bytes left.
+        left: u64,
+        /// The next settings that fit, in words.
+        mend: String,
+    },
     /// A mesh that was dropped, or belongs to another `Relight`.
     #[error("relight: mesh {index} is not here any more: use the id that `add_mesh` returned last")]
     UnknownMesh {

@@ -41,6 +41,7 @@ impl Mesh {
         let vectors = match vectors {
             Some(values) => {
                 check(settings, name, vertices, values)?;
+                check_budget(context, settings, name, vertices)?;
                 Some(Resident::new(context, name, &pack(settings, &chunks, values))?)
             }
             None => None,
@@ -74,6 +75,26 @@ fn pack(settings: &Settings, chunks: &[Chunk], values: &[f32]) -> Vec<u32> {
         words.extend(Layout::DEFAULT.pack(settings.order, settings.storage, stride, &values[range]));
     }
     words
+}
+
+/// Refuses a mesh that the budget has no room for, and says which settings have.
+fn check_budget(
+    context: &Context,
+    settings: &Settings,
+    name: &str,
+    vertices: u32,
+) -> Result<(), RelightError> {
+    let size = settings.mesh_bytes(vertices);
+    match context.memory_left() {
+        Some(left) if size > left => {
+            let mend = match settings.next_that_fits(vertices, left) {
+                Some(next) => format!("order {} with {:?} would fit", next.order, next.storage),
+                None => "no setting fits; raise the budget or drop meshes".to_owned(),
+            };
+            Err(RelightError::Budget { name: name.to_owned(), size, left, mend })
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check(settings: &Settings, name: &str, vertices: u32, values: &[f32]) -> Result<(), RelightError> {
