@@ -89,6 +89,12 @@ impl Table {
         amplitude * (value(v) - value(0.5 * gamma))
     }
 
+    /// The entries, row by row of u, v along a row.
+    #[must_use]
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
     /// Bytes of the table.
     #[must_use]
     pub fn bytes(&self) -> usize {
