@@ -63,13 +63,22 @@ pub struct Case<'a> {
     pub visibility: Option<&'a [f32]>,
     /// Normals of the vertices, of a mesh without vectors.
     pub normals: Option<&'a [[f32; 3]]>,
+    /// A filter of the light, as [`Rotations::set_filter`](crate::Rotations::set_filter) takes it.
+    pub filter: Option<&'a [[f64; 3]]>,
 }
 
 impl<'a> Case<'a> {
     /// A mesh in the orientation of its object space, without inputs of its own.
     #[must_use]
     pub fn new(light: CaseLight<'a>, mesh: MeshId) -> Self {
-        Self { light, mesh, orientation: Orientation::IDENTITY, visibility: None, normals: None }
+        Self {
+            light,
+            mesh,
+            orientation: Orientation::IDENTITY,
+            visibility: None,
+            normals: None,
+            filter: None,
+        }
     }
 }
 
@@ -166,6 +175,9 @@ impl Bench<'_> {
         }
         let frame = Frame { light, instances: vec![instance], target: None };
         let prepared = relight.prepare(self.context, &frame)?;
+        if let (Some(filter), Some(rotations)) = (case.filter, &prepared.rotations) {
+            rotations.set_filter(filter)?;
+        }
         for (resource, need) in &prepared.needs {
             match need {
                 Need::Scratch(ResourceDesc::Buffer(desc)) => {

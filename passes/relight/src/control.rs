@@ -1,5 +1,5 @@
-//! What changes from frame to frame without a new plan: rotations, pre-exposure, and whether the environment is
-//! projected.
+//! What changes from frame to frame without a new plan: rotations, pre-exposure, a filter of the light, and
+//! whether the environment is projected.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,14 +8,16 @@ use airglow_math::World;
 use glam::DQuat;
 
 use crate::RelightError;
-use crate::rotation::{LightFrame, Orientation, Turn};
+use crate::rotation::{LightFrame, OPEN, Orientation, Turn};
+use crate::settings::MAX_ORDER;
+use crate::tables::count_wrong;
 
 /// A poisoned lock means a panic elsewhere while the data was whole: go on with it.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The rotations of a prepared frame, and its pre-exposure. A plan that is recorded again reads what was set last.
+/// The rotations of a prepared frame, its pre-exposure and the filter of its light. A plan that is recorded again reads what was set last.
 #[derive(Clone, Debug)]
 pub struct Rotations {
     current: Arc<Mutex<Current>>,
@@ -26,6 +28,8 @@ struct Current {
     frame: LightFrame,
     /// From the light to the object space of each instance.
     turns: Vec<Turn>,
+    /// Bands of the light.
+    order: usize,
 }
 
 impl Rotations {
@@ -33,15 +37,17 @@ impl Rotations {
         frame: LightFrame,
         light: DQuat,
         instances: &[Orientation],
+        order: usize,
     ) -> Result<Self, RelightError> {
         let turns = turns(&frame, light, instances)?;
-        Ok(Self { current: Arc::new(Mutex::new(Current { frame, turns })) })
+        Ok(Self { current: Arc::new(Mutex::new(Current { frame, turns, order })) })
     }
 
     /// One fixed rotation by a unit quaternion.
     pub(crate) fn fixed(rotation: DQuat) -> Self {
-        let frame = LightFrame { orientation: Orientation::IDENTITY, factor: 1.0 };
-        Self { current: Arc::new(Mutex::new(Current { frame, turns: vec![Turn::rotation(rotation)] })) }
+        let frame = LightFrame { orientation: Orientation::IDENTITY, factor: 1.0, filter: OPEN };
+        let turns = vec![Turn::rotation(rotation)];
+        Self { current: Arc::new(Mutex::new(Current { frame, turns, order: MAX_ORDER })) }
     }
 
     /// Sets the rotation of the light in the host's world and that of each instance, in the order of the frame, each of
@@ -71,15 +77,45 @@ impl Rotations {
         World { pre_exposure: factor, ..World::default() }.check()?;
         let mut current = lock(&self.current);
         current.frame.factor = factor;
-        for turn in &mut current.turns {
-            turn.factors = turn.factors.map(|before| factor.copysign(f64::from(before)) as f32);
+        current.scale();
+        Ok(())
+    }
+
+    /// Sets what each band of the light is multiplied with, red, green and blue, from the next recording on: the zonal
+    /// filter of a convolution about every direction, such as that of a medium between the light and the scene. It takes
+    /// the place of a multiplication that is there without it. All 1 at first; the environment's coefficients that other
+    /// passes read stay as they come in.
+    ///
+    /// # Errors
+    /// [`RelightError::Length`] unless there is one for each band of the settings' order, [`RelightError::Values`] for
+    /// NaN and infinite ones; nothing is changed then.
+    pub fn set_filter(&self, factors: &[[f64; 3]]) -> Result<(), RelightError> {
+        let mut current = lock(&self.current);
+        let name = "the zonal filter".to_owned();
+        if factors.len() != current.order {
+            let (expected, actual) = (current.order, factors.len());
+            return Err(RelightError::Length { name, what: "the bands", expected, actual });
         }
+        if let Some((count, first)) = count_wrong(factors, |band| band.into_iter().any(|c| !c.is_finite())) {
+            let (what, problem) = ("bands", "NaN or infinite");
+            return Err(RelightError::Values { name, what, problem, count, first });
+        }
+        current.frame.filter[..factors.len()].copy_from_slice(factors);
+        current.scale();
         Ok(())
     }
 
     /// Reads the turns from the light to the object space of each instance.
     pub(crate) fn with<T>(&self, read: impl FnOnce(&[Turn]) -> T) -> T {
         read(&lock(&self.current).turns)
+    }
+}
+
+impl Current {
+    /// Puts factor and filter into every turn.
+    fn scale(&mut self) {
+        let LightFrame { factor, filter, .. } = self.frame;
+        self.turns.iter_mut().for_each(|turn| turn.scale(factor, &filter));
     }
 }
 

@@ -120,7 +120,7 @@ impl Relight {
         let Some(pipelines) = &self.light_pipelines else { return Ok(None) };
         let instances: Vec<Orientation> =
             frame.instances.iter().map(|instance| instance.orientation).collect();
-        let rotations = Rotations::new(light_frame, turn, &instances)?;
+        let rotations = Rotations::new(light_frame, turn, &instances, self.settings.order)?;
         let (count, stride) = (instances.len() as u32, self.light_stride());
         builder.scratch(Resource::Lights, u64::from(count) * stride);
         let work = Work::Rotate {

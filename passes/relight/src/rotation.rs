@@ -4,6 +4,7 @@ use airglow_math::{MathError, World};
 use glam::{DMat3, DQuat};
 
 use crate::RelightError;
+use crate::settings::MAX_ORDER;
 
 /// How far a matrix may be from a scaled rotation, relative to its scale.
 const TOLERANCE: f64 = 1e-4;
@@ -43,15 +44,29 @@ impl From<DQuat> for Orientation {
 pub(crate) struct Turn {
     /// x, y, z, w, unit length.
     pub quaternion: [f32; 4],
-    /// Of even and of odd bands.
-    pub factors: [f32; 2],
-    padding: [f32; 2],
+    /// Of each band, red, green and blue; the fourth is the sign that an inversion gives the band.
+    pub factors: [[f32; 4]; MAX_ORDER],
 }
+
+/// What each band of a light is multiplied with, red, green and blue.
+pub(crate) type Filter = [[f64; 3]; MAX_ORDER];
+
+/// Leaves every band as it is.
+pub(crate) const OPEN: Filter = [[1.0; 3]; MAX_ORDER];
 
 impl Turn {
     /// By a unit quaternion.
     pub(crate) fn rotation(unit: DQuat) -> Self {
-        Self { quaternion: unit.as_quat().to_array(), factors: [1.0; 2], padding: [0.0; 2] }
+        Self { quaternion: unit.as_quat().to_array(), factors: [[1.0; 4]; MAX_ORDER] }
+    }
+
+    /// The same with other factors of a light.
+    pub(crate) fn scale(&mut self, factor: f64, filter: &Filter) {
+        for (factors, band) in self.factors.iter_mut().zip(filter) {
+            let sign = factors[3];
+            let [red, green, blue] = band.map(|band| (factor * f64::from(sign) * band) as f32);
+            *factors = [red, green, blue, sign];
+        }
     }
 }
 
@@ -62,12 +77,14 @@ pub(crate) struct LightFrame {
     pub orientation: Orientation,
     /// A factor on the light: the pre-exposure.
     pub factor: f64,
+    /// Factors on each band of it.
+    pub filter: Filter,
 }
 
 impl LightFrame {
     /// Of light about the host's own axes.
     pub(crate) fn host(world: &World) -> Self {
-        Self { orientation: Orientation::IDENTITY, factor: world.pre_exposure }
+        Self { orientation: Orientation::IDENTITY, factor: world.pre_exposure, filter: OPEN }
     }
 
     /// Of an environment, whose centre looks forward and whose first row is up.
@@ -79,8 +96,12 @@ impl LightFrame {
     pub(crate) fn turn(&self, light: DQuat, instance: Orientation) -> Result<Turn, RelightError> {
         let rotation = object_space(light, instance.rotation)? * self.orientation.rotation;
         let inverted = instance.inverted != self.orientation.inverted;
-        let factors = [0, 1].map(|l| (self.factor * Orientation { rotation, inverted }.band_sign(l)) as f32);
-        Ok(Turn { factors, ..Turn::rotation(rotation) })
+        let mut turn = Turn::rotation(rotation);
+        for (l, factors) in turn.factors.iter_mut().enumerate() {
+            factors[3] = Orientation { rotation, inverted }.band_sign(l) as f32;
+        }
+        turn.scale(self.factor, &self.filter);
+        Ok(turn)
     }
 }
 

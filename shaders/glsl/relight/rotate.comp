@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Rotates SH RGB vectors by unit quaternions: rotated(s) = f(q^-1 s q), or f(-q^-1 s q) with an inversion, for
-// which Y_lm(-s) = (-1)^l Y_lm(s), each times a factor. One workgroup a rotation: it makes the matrices of all bands
+// which Y_lm(-s) = (-1)^l Y_lm(s), each band times a factor. One workgroup a rotation: it makes the matrices of all bands
 // together, then each invocation makes one coefficient.
 //
 // ORDER  1-6
@@ -16,7 +16,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Source {
 
 struct Turn {
     vec4 quaternion; // x, y, z, w
-    vec2 factors; // of even and of odd bands, which an inversion makes negative
+    vec4 factors[6]; // of each band, which an inversion makes negative where it is odd; w: that sign
 };
 
 layout(std430, set = 0, binding = 1) readonly buffer Turns {
@@ -63,6 +63,5 @@ void main()
         uint index = uint(l * (l + 1) + n);
         sum = fma(vec3(sh_rotation_at(l, m, n)), source.coefficients[which * strides.source + index].rgb, sum);
     }
-    vec2 factors = turns.values[which].factors;
-    rotated.coefficients[which * strides.rotated + i] = vec4(((l & 1) == 1 ? factors.y : factors.x) * sum, 0.0);
+    rotated.coefficients[which * strides.rotated + i] = vec4(turns.values[which].factors[l].rgb * sum, 0.0);
 }
