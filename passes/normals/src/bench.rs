@@ -126,6 +126,7 @@ impl Bench<'_> {
                 per_texel: if level.source == 0 { 1 } else { fit.lobes as u32 },
                 iterations: fit.iterations as u32,
                 sharpest: fit.sharpest as f32,
+                unused: 0,
             };
             let lobes = self.dispatch(&pipeline, &sources[level.source], &output, texels, &constants)?;
             built.push(LevelLobes { size: level.size, lobes });

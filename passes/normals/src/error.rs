@@ -33,6 +33,14 @@ pub enum NormalsError {
         /// Rows at that level.
         height: usize,
     },
+    /// A method that has no code on the device.
+    #[error(
+        "normals: there is no method `{method}` on the device: give vmf:1, vmf:2, vmf:4, vmf:6 or default"
+    )]
+    Method {
+        /// What was asked for.
+        method: String,
+    },
     /// A number out of its range.
     #[error("normals: {what} is {value}: give {range}")]
     Range {

@@ -32,6 +32,8 @@ pub struct FitConstants {
     pub iterations: u32,
     /// The sharpest lobe while fitting.
     pub sharpest: f32,
+    /// Rounds the block up to its alignment; 0.
+    pub unused: u32,
 }
 
 /// `Row` of `rows.comp`.

@@ -25,6 +25,7 @@ pub mod bench;
 mod brdf;
 pub mod chain;
 mod error;
+pub mod eval;
 mod fit;
 mod harmonics;
 pub mod kernels;

@@ -34,6 +34,14 @@ impl WeightedLobe {
     }
 }
 
+impl From<[f32; 4]> for WeightedLobe {
+    /// What [`WeightedLobe::packed`] holds.
+    fn from(packed: [f32; 4]) -> Self {
+        let [x, y, z, weight] = packed.map(f64::from);
+        Self { weight, moment: DVec3::new(x, y, z) }
+    }
+}
+
 /// Lobes whose weights sum to 1; lobe j of a texel corresponds to lobe j of its neighbours and of coarser levels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mixture {

@@ -7,8 +7,12 @@ mod common;
 use airglow_gpu::{GpuError, Recorder, Requirements};
 use airglow_math::statistics::relative_l2;
 use airglow_normals::bench::{Bench, LevelLobes, Row};
-use airglow_normals::{Brdf, FitSettings, Mixture, NormalMap, WeightedLobe, fit, reference, shade};
+use airglow_normals::eval::{TexelRow, lobes, texels};
+use airglow_normals::kernels::{BINDINGS, FitConstants, RowConstants};
+use airglow_normals::{Brdf, FitSettings, Mixture, NormalMap, fit, reference, shade};
 use airglow_tests::device::fixture_with;
+use airglow_tests::host_layout;
+use airglow_tests::reflect::Module;
 use common::{Random, directions};
 use glam::DVec3;
 
@@ -31,15 +35,10 @@ fn with_bench<T>(test: impl FnOnce(&Bench<'_>) -> T) -> T {
     test(&Bench { context: fixture.context(), run: &run })
 }
 
-fn wide(lobe: [f32; 4]) -> WeightedLobe {
-    let [x, y, z, weight] = lobe.map(f64::from);
-    WeightedLobe { weight, moment: DVec3::new(x, y, z) }
-}
-
 /// The mixture of a texel as the device left it.
 fn texel(level: &LevelLobes, lobes: usize, x: usize, y: usize) -> Mixture {
     let at = (y * level.size[0] + x) * lobes;
-    Mixture::new(level.lobes[at..at + lobes].iter().map(|&lobe| wide(lobe)).collect()).unwrap()
+    Mixture::new(level.lobes[at..at + lobes].iter().map(|&lobe| lobe.into()).collect()).unwrap()
 }
 
 #[test]
@@ -54,7 +53,7 @@ fn shading_is_that_of_the_reference() {
             let footprint = map.footprint(level, random.below(width), random.below(height)).unwrap();
             let mixture = fit(&footprint, &FitSettings { lobes: 1 + i % 6, ..Default::default() }).unwrap();
             // What f32 holds of the lobes is the input of both.
-            let lobes = mixture.lobes().iter().map(|lobe| wide(lobe.packed())).collect();
+            let lobes = mixture.lobes().iter().map(|lobe| lobe.packed().into()).collect();
             rows.push(Row { lobes, brdf, directions: directions(i, &footprint, 0.1, &mut random) });
         }
         let truth =
@@ -146,6 +145,57 @@ fn maps_of_any_size_and_content_give_finite_lobes() {
         assert!(bench.build(&flat, &FitSettings { iterations: 33, ..Default::default() }, u64::MAX).is_err());
         assert!(bench.build(&flat, &FitSettings::default(), 100).is_err());
     });
+}
+
+#[test]
+fn rows_of_texels_are_near_the_truth_or_refused() {
+    let map = common::weave(64);
+    let row = TexelRow {
+        level: 3,
+        x: 2,
+        y: 5,
+        light: DVec3::new(0.3, 0.1, 1.0),
+        view: DVec3::new(-0.1, 0.5, 1.0),
+        brdf: Brdf::BlinnPhong { exponent: 50.0 },
+        lobes: lobes("default").unwrap(),
+    };
+    let rows = [
+        row,
+        TexelRow { level: 6, x: 0, y: 0, lobes: 6, ..row },
+        TexelRow { level: 0, brdf: Brdf::Ggx { alpha: 0.5 }, ..row },
+        TexelRow { level: 4, x: 1, y: 1, brdf: Brdf::Lambert, ..row },
+        TexelRow { level: 7, x: 0, y: 0, ..row },
+        TexelRow { x: 8, ..row },
+        TexelRow { light: DVec3::ZERO, ..row },
+        TexelRow { brdf: Brdf::Ggx { alpha: 0.0 }, ..row },
+        TexelRow { lobes: 3, ..row },
+    ];
+    let results = with_bench(|bench| texels(bench, &map, &rows).unwrap());
+    for result in &results[..4] {
+        let found = result.as_ref().unwrap();
+        assert!((found.value / found.reference - 1.0).abs() < 0.05, "{found:?}");
+    }
+    for (result, word) in results[4..].iter().zip(["level 7", "(8, 5)", "light", "alpha", "vmf:3"]) {
+        let error = result.as_ref().unwrap_err().to_string();
+        assert!(error.contains(word), "{error} does not name {word}");
+    }
+    for refused in ["vmf:3", "vmf:", "lean", "sh:3"] {
+        assert!(lobes(refused).unwrap_err().to_string().contains("vmf:4"));
+    }
+}
+
+#[test]
+fn host_structs_are_as_the_compiler_laid_them_out() {
+    for lobes in [1, 2, 4, 6] {
+        let fit = Module::load(&format!("normals/fit.LOBES{lobes}.spv")).unwrap();
+        fit.assert_bindings(&BINDINGS);
+        let layout = host_layout!(FitConstants { fine, size, per_texel, iterations, sharpest, unused });
+        fit.push_constants.as_ref().unwrap().assert_matches(&layout);
+    }
+    let rows = Module::load("normals/rows.spv").unwrap();
+    rows.assert_bindings(&BINDINGS);
+    let row = rows.bindings[0].block.as_ref().unwrap().members[0].block.as_ref().unwrap();
+    row.assert_matches(&host_layout!(RowConstants { light, half_vector, lobes }));
 }
 
 /// `cargo test -p airglow-normals --test gpu -- --ignored --nocapture` prints how long a large chain takes.

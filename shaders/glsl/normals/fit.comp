@@ -25,6 +25,7 @@ layout(push_constant) uniform Settings {
     uint per_texel;  // samples of a texel
     uint iterations;
     float sharpest;  // concentration
+    uint unused;     // rounds the block up to its alignment
 } settings;
 
 // Second moments of a cluster, about its mean, and its weighted mean.

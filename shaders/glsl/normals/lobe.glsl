@@ -11,7 +11,7 @@
 
 // Below, a lobe is uniform to 1e-3; above, 1 - r has no digits left in f32.
 const float NORMALS_MIN_CONCENTRATION = 1e-3;
-const float NORMALS_MAX_CONCENTRATION = 1e5;
+const float NORMALS_MAX_CONCENTRATION = 1e7;
 
 struct NormalsLobe {
     vec3 axis;
