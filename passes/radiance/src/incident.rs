@@ -1,6 +1,6 @@
 //! Incident radiance at a point, as a light vector, with what the oracle needs to know of its emitters.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::RadianceError;
 
@@ -16,6 +16,9 @@ pub struct Incident {
     /// The same, weighted with radiance: `Integral L(s) / d(s) ds`. How fast the light changes with position:
     /// moving by a small h changes what each emitter sends by the order of h / d of itself.
     pub slope: DVec3,
+    /// Derivatives of each coefficient by position, columns d/dx, d/dy and d/dz of RGB, 1/m; empty where none were asked
+    /// for. What is seen is taken as unchanged: nothing appears from behind another.
+    pub gradients: Vec<DMat3>,
 }
 
 impl Incident {
@@ -26,7 +29,7 @@ impl Incident {
     pub fn dark(order: usize) -> Result<Self, RadianceError> {
         airglow_math::sh::check_order(order)?;
         let coefficients = vec![DVec3::ZERO; airglow_math::sh::coefficient_count(order)];
-        Ok(Self { coefficients, solid_angle: 0.0, nearness: 0.0, slope: DVec3::ZERO })
+        Ok(Self { coefficients, solid_angle: 0.0, nearness: 0.0, slope: DVec3::ZERO, gradients: Vec::new() })
     }
 
     /// Harmonic mean of the distances of emitters, weighted with solid angle (Sun 2005, section 3.3.2); infinite
@@ -42,7 +45,8 @@ impl Incident {
         (self.coefficients.iter().map(|l| l.length_squared()).sum::<f64>() / 3.0).sqrt()
     }
 
-    /// Adds the light of other emitters that neither cover these nor are covered by them.
+    /// Adds the light of other emitters that neither cover these nor are covered by them. Gradients stay if both have
+    /// them.
     ///
     /// # Errors
     /// [`RadianceError::Length`] when the orders differ.
@@ -52,6 +56,8 @@ impl Incident {
             return Err(RadianceError::Length { what: "the light vector to add", expected, actual });
         }
         self.coefficients.iter_mut().zip(&other.coefficients).for_each(|(sum, l)| *sum += *l);
+        let gradients = self.gradients.iter().zip(&other.gradients);
+        self.gradients = gradients.map(|(one, other)| *one + *other).collect();
         self.solid_angle += other.solid_angle;
         self.nearness += other.nearness;
         self.slope += other.slope;

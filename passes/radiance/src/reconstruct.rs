@@ -28,6 +28,7 @@ pub const OVERLAP: f64 = 1.5;
 pub struct Reconstruction<'a> {
     refined: &'a Refined,
     weights: Weights,
+    extrapolate: bool,
     /// Number, centre and radius of each sample that is used.
     used: Vec<(usize, DVec3, f64)>,
     octree: Octree,
@@ -36,9 +37,10 @@ pub struct Reconstruction<'a> {
 }
 
 impl<'a> Reconstruction<'a> {
-    /// Puts the samples into an octree.
+    /// Puts the samples into an octree. With `extrapolate`, samples that hold gradients are continued to first order to the
+    /// point (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for Mid-Range Illumination", 2004).
     #[must_use]
-    pub fn new(refined: &'a Refined, weights: Weights) -> Self {
+    pub fn new(refined: &'a Refined, weights: Weights, extrapolate: bool) -> Self {
         let overlap = if weights == Weights::Compact { OVERLAP } else { 1.0 };
         let samples = refined.samples.iter().enumerate();
         let used: Vec<_> = samples
@@ -48,7 +50,7 @@ impl<'a> Reconstruction<'a> {
         let spheres: Vec<_> = used.iter().map(|(_, centre, radius)| (*centre, *radius)).collect();
         let largest = used.iter().fold(0.0, |largest: f64, (_, _, radius)| largest.max(*radius));
         let least = (1e-6 * largest).max(f64::MIN_POSITIVE.sqrt());
-        Self { refined, weights, octree: Octree::new(&spheres), used, least }
+        Self { refined, weights, extrapolate, octree: Octree::new(&spheres), used, least }
     }
 
     /// The light vector at `point` into `out`, and the number of samples it came from; with 0, `out` is black: no domain
@@ -70,8 +72,12 @@ impl<'a> Reconstruction<'a> {
             let weight = self.weight(centre.distance(point), radius);
             if weight > 0.0 {
                 (total, count) = (total + weight, count + 1);
-                let light = &self.refined.samples[number].light.coefficients;
-                out.iter_mut().zip(light).for_each(|(sum, l)| *sum += weight * *l);
+                let light = &self.refined.samples[number].light;
+                out.iter_mut().zip(&light.coefficients).for_each(|(sum, l)| *sum += weight * *l);
+                if self.extrapolate {
+                    let step = weight * (point - centre);
+                    out.iter_mut().zip(&light.gradients).for_each(|(sum, change)| *sum += *change * step);
+                }
             }
         });
         if count > 0 {

@@ -6,7 +6,9 @@
 
 use airglow_math::sh::{coefficient_count, evaluate};
 use airglow_math::sphere::cube::{Face, SolidAngles};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+
+use super::slope::slopes;
 
 use crate::{Incident, RadianceError, Triangle};
 
@@ -19,6 +21,8 @@ pub struct Cube {
     solid_angles: Vec<f64>,
     /// Basis at each texel's centre, `[face][y][x][coefficient]`.
     basis: Vec<f64>,
+    /// Its gradients on the sphere, same shape; empty unless gradients are asked for.
+    slopes: Vec<DVec3>,
 }
 
 /// What a texel sees: the radiance and distance of the nearest triangle.
@@ -26,9 +30,11 @@ pub struct Cube {
 struct Texel {
     distance: f64,
     radiance: DVec3,
+    /// The triangle's normal over its product with the texel's unit ray.
+    tilt: DVec3,
 }
 
-const EMPTY: Texel = Texel { distance: f64::INFINITY, radiance: DVec3::ZERO };
+const EMPTY: Texel = Texel { distance: f64::INFINITY, radiance: DVec3::ZERO, tilt: DVec3::ZERO };
 
 impl Cube {
     /// Tables for faces of `size` by `size` texels.
@@ -50,7 +56,20 @@ impl Cube {
             let ray = ray(Face::ALL[texel / (size * size)], size, texel % size, texel / size % size);
             evaluate(order, ray.normalize(), values)?;
         }
-        Ok(Self { size, order, solid_angles, basis })
+        Ok(Self { size, order, solid_angles, basis, slopes: Vec::new() })
+    }
+
+    /// The same cube, whose samples hold gradients, too.
+    #[must_use]
+    pub fn with_gradients(mut self) -> Self {
+        let count = coefficient_count(self.order);
+        let face = self.size * self.size;
+        for (texel, values) in self.basis.chunks_exact(count).enumerate() {
+            let ray =
+                ray(Face::ALL[texel / face], self.size, texel % self.size, texel / self.size % self.size);
+            self.slopes.extend(slopes(self.order, ray.normalize(), values));
+        }
+        self
     }
 
     /// Radiance that arrives at `point` from triangles that hide one another. A triangle seen edge-on, of no area, or
@@ -60,6 +79,9 @@ impl Cube {
     /// None that [`Cube::new`] has not found.
     pub fn sample(&self, point: DVec3, triangles: &[Triangle]) -> Result<Incident, RadianceError> {
         let mut incident = Incident::dark(self.order)?;
+        if !self.slopes.is_empty() {
+            incident.gradients = vec![DMat3::ZERO; incident.coefficients.len()];
+        }
         let mut texels = vec![EMPTY; self.size * self.size];
         for face in Face::ALL {
             texels.fill(EMPTY);
@@ -83,6 +105,7 @@ impl Cube {
         if volume == 0.0 {
             return;
         }
+        let normal = edges.iter().sum::<DVec3>();
         for y in rows[0]..rows[1] {
             for x in columns[0]..columns[1] {
                 let ray = ray(face, self.size, x, y);
@@ -90,10 +113,12 @@ impl Cube {
                 if weights.iter().any(|weight| *weight < 0.0) {
                     continue;
                 }
-                let distance = volume / weights.iter().sum::<f64>() * ray.length();
+                let along = weights.iter().sum::<f64>();
+                let distance = volume / along * ray.length();
                 let texel = &mut texels[y * self.size + x];
                 if distance < texel.distance {
-                    *texel = Texel { distance, radiance: triangle.radiance };
+                    let tilt = ray.length() / along * normal;
+                    *texel = Texel { distance, radiance: triangle.radiance, tilt };
                 }
             }
         }
@@ -135,6 +160,25 @@ impl Cube {
             incident.solid_angle += solid_angle;
             incident.nearness += solid_angle / texel.distance;
             incident.slope += power / texel.distance;
+            self.project_gradients(first + i, texel, power / texel.distance, incident);
+        }
+    }
+
+    /// Adds a texel's part of the gradients: a patch of area dA at s from the point, normal n, sends
+    /// `L Y(s/|s|) n.s / |s|^3 dA`; moving the point is moving s the other way (Annen et al. 2004, section 3).
+    fn project_gradients(&self, place: usize, texel: &Texel, power: DVec3, incident: &mut Incident) {
+        if self.slopes.is_empty() {
+            return;
+        }
+        let count = incident.coefficients.len();
+        let texels = self.size * self.size;
+        let at = place % texels;
+        let ray = ray(Face::ALL[place / texels], self.size, at % self.size, at / self.size).normalize();
+        let range = place * count..(place + 1) * count;
+        let terms = self.basis[range.clone()].iter().zip(&self.slopes[range]);
+        for (gradient, (y, slope)) in incident.gradients.iter_mut().zip(terms) {
+            let change = *y * (3.0 * ray - texel.tilt) - *slope;
+            *gradient += DMat3::from_cols(change.x * power, change.y * power, change.z * power);
         }
     }
 }

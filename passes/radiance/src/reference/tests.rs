@@ -118,6 +118,27 @@ proptest! {
     }
 }
 
+/// Gradients of a cube against differences of the closed form.
+#[test]
+fn gradients_are_differences() {
+    let corners = [DVec3::new(-0.5, 1.0, -0.3), DVec3::new(0.9, 1.2, 0.0), DVec3::new(0.1, 1.5, 1.1)];
+    let triangle = Triangle { corners, radiance: DVec3::new(1.0, 0.5, 2.0) };
+    let cube = Cube::new(4, 256).unwrap().with_gradients();
+    let gradients = cube.sample(DVec3::ZERO, &[triangle]).unwrap().gradients;
+    assert_eq!(gradients.len(), 16);
+    let at = |point: DVec3| polygon(4, point, &corners, triangle.radiance).unwrap().coefficients;
+    for axis in 0..3 {
+        let step = 1e-4 * DVec3::AXES[axis];
+        for (i, (after, before)) in at(step).into_iter().zip(at(-step)).enumerate() {
+            let (expected, actual) = ((after - before) / 2e-4, gradients[i].col(axis));
+            assert!(
+                actual.distance(expected) < 1e-2,
+                "axis {axis}, coefficient {i}: {actual} is not {expected}"
+            );
+        }
+    }
+}
+
 /// A closed box around the point, or a sphere, is a uniform sky.
 #[test]
 fn from_inside_light_comes_from_everywhere() {
