@@ -46,11 +46,11 @@ int main(int count, char **arguments) {
     AirglowRelight *relight;
     check(airglow_context_adopt(&adopt, &context, &error));
     check(airglow_relight_new(context, &settings, &relight, &error));
-    const uint32_t side = 192, vertices = side * side;
+    const uint32_t side = 128, vertices = side * side;
     const Field field(side);
     std::vector<float> transfer(vertices * settings.order * settings.order);
     AirglowBakeInfo bake = {};
-    bake.struct_size = sizeof bake, bake.order = settings.order, bake.threads = 4;
+    bake.struct_size = sizeof bake, bake.order = settings.order, bake.rays = 128, bake.threads = 4;
     bake.positions = field.positions.data(), bake.normals = field.normals.data(), bake.vertex_count = vertices;
     bake.indices = field.indices.data(), bake.index_count = field.indices.size();
     check(airglow_bake(&bake, transfer.data(), transfer.size(), nullptr, &error));
