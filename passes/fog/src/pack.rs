@@ -210,3 +210,6 @@ fn wide(vector: DVec3, w: f64) -> [f32; 4] {
 fn rgb(values: [f64; 3], w: f64) -> [f32; 4] {
     wide(DVec3::from(values), w)
 }
+
+#[cfg(test)]
+mod tests;

@@ -42,6 +42,7 @@ pub struct Drawn {
     /// Scene-linear radiance.
     pub hdr: Handle<Image>,
     /// 0 at the near plane, 1 at the far one and where there is nothing.
+    #[cfg(feature = "fog")]
     pub depth: Handle<Image>,
 }
 
@@ -161,7 +162,11 @@ impl Pipelines {
             }
             recorder.end_rendering()
         }));
-        Drawn { hdr, depth }
+        Drawn {
+            hdr,
+            #[cfg(feature = "fog")]
+            depth,
+        }
     }
 
     /// Develops the HDR target of a view into its region of two buffers of the host's. Returns the buffers with it in
