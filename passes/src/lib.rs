@@ -10,6 +10,8 @@ pub use airglow_fog as fog;
 pub use airglow_gpu as gpu;
 pub use airglow_graph as graph;
 pub use airglow_math as math;
+#[cfg(feature = "normals")]
+pub use airglow_normals as normals;
 #[cfg(feature = "relight")]
 pub use airglow_relight as relight;
 

@@ -29,6 +29,8 @@ use crate::output::Output;
                   draine:g;alpha); method (default, reference), or --set method=reference for all rows
   fog-surface     t_sp, theta, n -> g                   G_n; n = 1 is Lambert's lobe; also method (default, reference)
   fog-psf         t_sv, gamma -> psf                    also method (exact, factored)
+  normals         level, x, y, lx, ly, lz, vx, vy, vz, brdf -> radiance   --set map=FILE; brdf (lambert, blinn:n,
+                  ggx:a); also method (vmf:1, vmf:2, vmf:4, vmf:6; default is vmf:4)
 
 Example:
   printf 'order,f,qx,qy,qz,qw\\n2,1;0;0.5;0,0,1,0,1\\n' > rows.csv
@@ -69,6 +71,9 @@ pub enum Evaluator {
     /// The point spread function of fog.
     #[cfg(feature = "fog")]
     FogPsf,
+    /// The radiance of a texel of a normal map's level.
+    #[cfg(feature = "normals")]
+    Normals,
 }
 
 impl Evaluator {
@@ -83,6 +88,8 @@ impl Evaluator {
             Self::FogSurface => &["t_sp", "theta", "n"],
             #[cfg(feature = "fog")]
             Self::FogPsf => &["t_sv", "gamma"],
+            #[cfg(feature = "normals")]
+            Self::Normals => &["level", "x", "y", "lx", "ly", "lz", "vx", "vy", "vz", "brdf"],
         }
     }
 
@@ -97,6 +104,8 @@ impl Evaluator {
             Self::FogSurface => &["g"],
             #[cfg(feature = "fog")]
             Self::FogPsf => &["psf"],
+            #[cfg(feature = "normals")]
+            Self::Normals => &["radiance"],
         }
     }
 
@@ -106,6 +115,8 @@ impl Evaluator {
             Self::ShProduct | Self::ShRotate => &[],
             #[cfg(feature = "fog")]
             Self::FogAirlight | Self::FogSurface | Self::FogPsf => &["method"],
+            #[cfg(feature = "normals")]
+            Self::Normals => &["map"],
         }
     }
 }
@@ -151,6 +162,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::FogPsf => {
                 let bench = airglow::fog::Bench { context: device.context(), run: &run };
                 eval::fog::spread(&bench, &table, &settings)
+            }
+            #[cfg(feature = "normals")]
+            Evaluator::Normals => {
+                let bench = airglow::normals::Bench { context: device.context(), run: &run };
+                eval::normals::normals(&bench, &table, &settings)
             }
         }
     })?;

@@ -2,6 +2,8 @@
 
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod normals;
 pub mod number;
 #[cfg(feature = "relight")]
 pub mod relight;
