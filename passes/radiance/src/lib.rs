@@ -22,5 +22,5 @@ pub use hierarchy::{Hierarchy, MAX_VERTICES, Node};
 pub use incident::Incident;
 pub use octree::{LEVELS, Octree};
 pub use oracle::Oracle;
-pub use reconstruct::{OVERLAP, Reconstruction, Weights};
+pub use reconstruct::{OVERLAP, Reconstruction, TRUST, Weights};
 pub use refine::{Refined, Sample, Sampler, Settings, refine};

@@ -23,6 +23,10 @@ pub enum Weights {
 /// weights of zero.
 pub const OVERLAP: f64 = 1.5;
 
+/// How far a sample is continued by its gradients, as a part of the distance of its emitters: further on, a straight line is
+/// no longer near the light's change. Of 0.3, 0.5 and 1, 0.3 leaves the least error in a church lit by near lamps.
+pub const TRUST: f64 = 0.3;
+
 /// Samples, ready to be interpolated.
 #[derive(Debug)]
 pub struct Reconstruction<'a> {
@@ -75,7 +79,7 @@ impl<'a> Reconstruction<'a> {
                 let light = &self.refined.samples[number].light;
                 out.iter_mut().zip(&light.coefficients).for_each(|(sum, l)| *sum += weight * *l);
                 if self.extrapolate {
-                    let step = weight * (point - centre);
+                    let step = weight * (point - centre).clamp_length_max(TRUST * light.distance());
                     out.iter_mut().zip(&light.gradients).for_each(|(sum, change)| *sum += *change * step);
                 }
             }

@@ -13,6 +13,14 @@ use glam::DVec3;
 
 const ORDER: usize = 4;
 
+/// Every way to reconstruct.
+const KNOBS: [(Weights, bool); 4] = [
+    (Weights::Inverse, false),
+    (Weights::Inverse, true),
+    (Weights::Compact, false),
+    (Weights::Compact, true),
+];
+
 /// A level floor of side 2 about the origin, its vertices a grid, with the transfer of what nothing shadows.
 fn floor(side: usize) -> (Vec<[f32; 3]>, Vec<f32>) {
     let at = |i: usize| (2.0 * i as f32 / (side - 1) as f32) - 1.0;
@@ -44,6 +52,11 @@ fn refined(tree: &Hierarchy, settings: &Settings, emitters: &[Triangle]) -> Refi
     sample(tree, settings, &Cube::new(ORDER, 16).unwrap().with_gradients(), emitters).unwrap()
 }
 
+/// Cube maps whose texels do not show beside other errors.
+fn fine() -> Cube {
+    Cube::new(ORDER, 64).unwrap().with_gradients()
+}
+
 /// Colours of all vertices, and the least number of samples that any of them came from.
 fn colours(
     refined: &Refined,
@@ -51,7 +64,17 @@ fn colours(
     transfer: &[f32],
     weights: Weights,
 ) -> (Vec<f64>, usize) {
-    let reconstruction = Reconstruction::new(refined, weights, false);
+    reconstructed(refined, positions, transfer, weights, false)
+}
+
+fn reconstructed(
+    refined: &Refined,
+    positions: &[[f32; 3]],
+    transfer: &[f32],
+    weights: Weights,
+    extrapolate: bool,
+) -> (Vec<f64>, usize) {
+    let reconstruction = Reconstruction::new(refined, weights, extrapolate);
     let mut light = vec![DVec3::ZERO; ORDER * ORDER];
     let (mut colours, mut least) = (Vec::new(), usize::MAX);
     for (position, t) in positions.iter().zip(transfer.chunks_exact(ORDER * ORDER)) {
@@ -80,8 +103,8 @@ fn every_vertex_has_a_sample_and_every_light_is_finite() {
     for (what, emitters) in cases {
         for bound in [0.0, 1e-3, f64::INFINITY] {
             let refined = refined(&tree, &Settings { bound, limit: 200, ..Settings::default() }, &emitters);
-            for weights in [Weights::Inverse, Weights::Compact] {
-                let (colours, least) = colours(&refined, &positions, &transfer, weights);
+            for (weights, extrapolate) in KNOBS {
+                let (colours, least) = reconstructed(&refined, &positions, &transfer, weights, extrapolate);
                 assert!(least > 0, "{what}, bound {bound}, {weights:?}: a vertex without a sample");
                 assert!(
                     colours.iter().all(|colour| colour.is_finite()),
@@ -158,6 +181,25 @@ fn error_falls_with_the_bound() {
     }
 }
 
+/// The same samples, continued by their gradients, leave less error.
+#[test]
+fn gradients_lessen_the_error() {
+    let (positions, transfer) = floor(32);
+    let tree = tree(&positions, &transfer);
+    let emitters = lamp(DVec3::new(0.2, 0.5, -0.1), 0.5, 3.0);
+    let run = |bound| sample(&tree, &Settings { bound, ..Settings::default() }, &fine(), &emitters).unwrap();
+    let truth = colours(&run(0.0), &positions, &transfer, Weights::Compact).0;
+    for (bound, gain) in [(0.03, 0.8), (0.01, 0.8), (0.003, 0.8)] {
+        let refined = run(bound);
+        let [plain, better] = [false, true].map(|extrapolate| {
+            let (colours, _) = reconstructed(&refined, &positions, &transfer, Weights::Compact, extrapolate);
+            airglow_math::statistics::relative_l2(&colours, &truth).unwrap()
+        });
+        println!("bound {bound}: error {plain:.4}, with gradients {better:.4}");
+        assert!(better < gain * plain, "bound {bound}: {better} is not below {gain} times {plain}");
+    }
+}
+
 #[test]
 fn coincident_vertices_and_one_triangle_are_receivers() {
     let (_, transfer) = floor(2);
@@ -184,7 +226,7 @@ fn a_thin_wall_leaks_no_more_than_stated() {
             colours.iter().zip(&positions).filter(|(_, p)| p[0] > 0.0).map(|(c, _)| c * c).sum();
         (square / colours.iter().map(|c| c * c).sum::<f64>()).sqrt()
     };
-    for (bound, leak) in [(0.03, 0.2), (0.003, 0.1), (0.0, 1e-12)] {
+    for (bound, leak) in [(0.03, 0.1), (0.003, 0.05), (0.0, 1e-12)] {
         let refined = refined(&tree, &Settings { bound, ..Settings::default() }, &emitters);
         let (colours, _) = colours(&refined, &positions, &transfer, Weights::Compact);
         println!("bound {bound}: {} samples, leak {:.4}", refined.samples.len(), dark(&colours));
