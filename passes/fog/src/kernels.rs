@@ -42,6 +42,8 @@ static SURFACE_ROWS: [&[u8]; 2] = [
     include_bytes!("../../../shaders/spirv/fog/surface_rows.FOG_LOBE_SIZE64.spv").as_slice(),
     include_bytes!("../../../shaders/spirv/fog/surface_rows.FOG_LOBE_SIZE256.spv").as_slice(),
 ];
+static BACKGROUND_PARTS: &[u8] = include_bytes!("../../../shaders/spirv/fog/background_parts.spv").as_slice();
+static BACKGROUND: &[u8] = include_bytes!("../../../shaders/spirv/fog/background.spv").as_slice();
 static SPREAD_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/spread_rows.spv").as_slice();
 
 /// Bindings of the airlight pass: the frame, the surfaces' radiance, their depth.
@@ -101,6 +103,16 @@ pub(crate) fn surface_rows(preset: Preset) -> Vec<u32> {
 /// The point spread function of rows of parameters.
 pub(crate) fn spread_rows() -> Vec<u32> {
     words(SPREAD_ROWS)
+}
+
+/// One level of the pyramid of an environment.
+pub(crate) fn background_parts() -> Vec<u32> {
+    words(BACKGROUND_PARTS)
+}
+
+/// The environment through fog.
+pub(crate) fn background() -> Vec<u32> {
+    words(BACKGROUND)
 }
 
 /// One triangle over the viewport.

@@ -36,6 +36,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod background;
 pub mod bench;
 mod camera;
 mod control;
@@ -56,6 +57,7 @@ pub mod rivals;
 mod settings;
 pub mod stability;
 
+pub use background::{BACKGROUND_BINDINGS, Background, Distant};
 pub use bench::Bench;
 pub use camera::Camera;
 pub use control::Control;

@@ -1,0 +1,184 @@
+//! Environments through fog: the picture against quadrature over the map, its energy and the band factors.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+
+use std::f64::consts::{PI, TAU};
+
+use airglow_fog::reference::spread::exact;
+use airglow_fog::{Background, Distant, Fog, Medium, Settings};
+use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
+use airglow_gpu::{Image, Label, Location};
+use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+use airglow_math::sh;
+use airglow_math::sphere::equirect;
+use airglow_tests::device::{Fixture, fixture_with};
+
+const WIDTH: u32 = 37;
+const HEIGHT: u32 = 19;
+
+/// A sky with a small sun in it.
+fn environment() -> Vec<[f32; 4]> {
+    let texel = |i: u32| {
+        let (x, y) = (i % WIDTH, i / WIDTH);
+        let sky = 0.4 + 0.3 * (x as f32 * 0.5).sin() * (y as f32 * 0.3).cos();
+        if (x, y) == (25, 5) { [900.0, 700.0, 500.0, 1.0] } else { [sky, 0.9 * sky, 1.2 * sky, 1.0] }
+    };
+    (0..WIDTH * HEIGHT).map(texel).collect()
+}
+
+fn fogged(fixture: &Fixture, distant: &Distant) -> Vec<[f32; 4]> {
+    let context = fixture.context();
+    let image = |name, usage| -> Image {
+        let desc = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
+        context.create_image(Label::new("test", name), &desc).unwrap()
+    };
+    let map = image("environment", ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST);
+    let target = image("fogged", ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC);
+    let desc = BufferDesc { size: 16 * u64::from(WIDTH * HEIGHT), usage: BufferUsageFlags::TRANSFER_SRC };
+    let staging = context.create_buffer(Label::new("test", "texels"), &desc, Location::Upload).unwrap();
+    staging.write(0, &environment()).unwrap();
+    let background = Background::new(context, [WIDTH, HEIGHT], Format::R32G32B32A32_SFLOAT).unwrap();
+    let mut copy = None;
+    fixture
+        .device()
+        .run(context, |recorder| {
+            let (view, target_view) = (map.full_view()?, target.full_view()?);
+            recorder.transition(&map, State::idle(ImageLayout::UNDEFINED), Access::TransferDestination)?;
+            recorder.copy_buffer_to_image(&staging, &view)?;
+            recorder.transition(&map, Access::TransferDestination, Access::ComputeSampled)?;
+            recorder.memory_barrier(Access::TransferDestination, Access::FragmentSampled)?;
+            recorder.transition(
+                &target,
+                State::idle(ImageLayout::UNDEFINED),
+                Access::ColorAttachmentWrite,
+            )?;
+            background.record(recorder, &view, &target_view, distant).unwrap();
+            recorder.transition(&target, Access::ColorAttachmentWrite, Access::TransferSource)?;
+            copy = Some(recorder.read_back_image(&target_view)?);
+            Ok(())
+        })
+        .unwrap();
+    copy.unwrap().read::<[f32; 4]>().unwrap()
+}
+
+fn middle(x: u32, y: u32) -> glam::DVec3 {
+    let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+    equirect::direction(place[0] / f64::from(WIDTH), place[1] / f64::from(HEIGHT))
+}
+
+fn solid_angle(y: u32) -> f64 {
+    equirect::texel_solid_angle(WIDTH as usize, HEIGHT as usize, y as usize).unwrap()
+}
+
+/// The picture in a direction, the map constant on each texel: every texel in 3² parts, those about the direction in
+/// 24².
+fn truth(environment: &[[f32; 4]], direction: glam::DVec3, seen: [f32; 4], distant: &Distant) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for y in 0..HEIGHT {
+        for x in 0..WIDTH {
+            let near = middle(x, y).distance(direction) < 0.5;
+            let split = if near { 24 } else { 3 };
+            let mut glow = [0.0; 3];
+            for j in 0..split {
+                for i in 0..split {
+                    let part = |at: u32, k: u32| f64::from(at) + (f64::from(k) + 0.5) / f64::from(split);
+                    let v = part(y, j) / f64::from(HEIGHT);
+                    let towards = equirect::direction(part(x, i) / f64::from(WIDTH), v);
+                    let share =
+                        TAU * PI * (PI * v).sin() / f64::from(WIDTH * HEIGHT) / f64::from(split * split);
+                    let chord = towards.distance(direction).max(0.5 * (share / PI).sqrt());
+                    let gamma = 2.0 * (0.5 * chord).min(1.0).asin();
+                    let mut last = (f64::NAN, 0.0);
+                    for (glow, &optical) in glow.iter_mut().zip(&distant.optical_distance) {
+                        if last.0 != optical {
+                            last = (optical, exact(optical, gamma).unwrap());
+                        }
+                        *glow += share * last.1;
+                    }
+                }
+            }
+            let texel = environment[(y * WIDTH + x) as usize];
+            for c in 0..3 {
+                sum[c] += distant.albedo[c] * f64::from(texel[c]) * glow[c];
+            }
+        }
+    }
+    [0, 1, 2].map(|c| (-distant.optical_distance[c]).exp() * f64::from(seen[c]) + sum[c])
+}
+
+#[test]
+fn the_picture_is_that_by_quadrature_over_the_map() {
+    let fixture = fixture_with(&Fog::requirements(&Settings::default()));
+    let environment = environment();
+    let grey = Distant { optical_distance: [0.7; 3], albedo: [1.0, 0.9, 0.8] };
+    let coloured = Distant { optical_distance: [0.05, 1.0, 4.0], albedo: [1.0; 3] };
+    for distant in [grey, coloured] {
+        let picture = fogged(&fixture, &distant);
+        let mut worst = 0.0_f64;
+        for (x, y) in [(25, 5), (24, 5), (26, 6), (27, 8), (3, 0), (20, 18), (0, 9), (36, 9), (10, 12)] {
+            let at = (y * WIDTH + x) as usize;
+            let expected = truth(&environment, middle(x, y), environment[at], &distant);
+            for c in 0..3 {
+                let actual = f64::from(picture[at][c]);
+                let error = (actual / expected[c] - 1.0).abs();
+                println!("({x}, {y}) channel {c}: {actual:.5} and {:.5}", expected[c]);
+                worst = worst.max(error);
+            }
+        }
+        println!("worst {worst:.2e}");
+        assert!(worst < 0.03, "{worst}");
+    }
+}
+
+#[test]
+fn the_light_of_the_whole_picture_is_that_of_the_first_band() {
+    let fixture = fixture_with(&Fog::requirements(&Settings::default()));
+    for optical in [1e-3, 0.1, 1.0, 5.0] {
+        let distant = Distant { optical_distance: [optical; 3], albedo: [1.0; 3] };
+        let sum = |texels: &[[f32; 4]]| -> f64 {
+            texels.iter().zip(0..).map(|(texel, i)| f64::from(texel[1]) * solid_angle(i / WIDTH)).sum()
+        };
+        let share = sum(&fogged(&fixture, &distant)) / sum(&environment());
+        let factor = distant.band_factors(1).unwrap()[0][1];
+        println!("optical distance {optical}: {share:.5} and {factor:.5}");
+        assert!((share / factor - 1.0).abs() < 0.015, "{share} and {factor}");
+    }
+}
+
+#[test]
+fn clear_and_opaque_media_have_their_limits() {
+    let fixture = fixture_with(&Fog::requirements(&Settings::default()));
+    let clear = Distant { optical_distance: [0.0; 3], albedo: [1.0; 3] };
+    assert_eq!(fogged(&fixture, &clear), environment());
+    assert_eq!(clear.band_factors(6).unwrap(), vec![[1.0; 3]; 6]);
+    for optical in [200.0, 1e3, 1e30] {
+        let opaque = Distant { optical_distance: [optical; 3], albedo: [1.0; 3] };
+        assert!(fogged(&fixture, &opaque).iter().flatten().all(|value| *value == 0.0 || *value == 1.0));
+        assert!(opaque.band_factors(6).unwrap().iter().flatten().all(|value| value.abs() < 1e-80));
+    }
+    let refused = Distant { albedo: [1.0, 2.0, 1.0], ..clear }.band_factors(3).unwrap_err();
+    assert!(refused.to_string().contains("albedo"), "{refused}");
+    assert!(Distant::new(&Medium::with_visibility(60.0), f64::NAN).is_err());
+}
+
+#[test]
+fn bands_fall_and_a_tabulated_brdf_is_spread_by_them() {
+    for optical in [1e-4, 0.01, 0.3, 1.0, 3.0, 20.0] {
+        let distant = Distant { optical_distance: [optical; 3], albedo: [1.0; 3] };
+        let factors = distant.band_factors(6).unwrap();
+        for pair in factors.windows(2) {
+            assert!(pair[1][0] <= pair[0][0] && pair[1][0] > 0.0, "{optical}: {factors:?}");
+        }
+        println!("{optical}: {:.4}", factors[0][0]);
+        // A medium that absorbs nothing sends light to the eye from all around: up to an eighth more than in clear air.
+        assert!(factors[0][0] < 1.15, "{optical}: {}", factors[0][0]);
+    }
+    // A tabulated BRDF that answers one band alone.
+    let distant = Distant { optical_distance: [0.8; 3], albedo: [0.5; 3] };
+    let mut table = vec![0.0; 2 * 9];
+    table[9 + sh::index(1, 0)] = 2.0;
+    let effective = distant.effective_brdf(0, 3, &table).unwrap();
+    let expected = 2.0 * (distant.band_factors(3).unwrap()[1][0] - (-0.8_f64).exp());
+    assert!((effective[9 + sh::index(1, 0)] - expected).abs() < 1e-12);
+    assert!(distant.effective_brdf(0, 3, &table[..10]).is_err());
+}
