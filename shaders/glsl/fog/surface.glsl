@@ -68,6 +68,12 @@ vec3 fog_blinn(FogIncident incident, vec3 normal, vec3 view, int table, float ex
     return incident.direct * pow(cosine, exponent) + glow;
 }
 
+// `Lobe::Ggx(alpha).exponent()`, up to rounding.
+float fog_exponent_of_ggx(float alpha)
+{
+    return clamp(0.4 * (1.0 / max(alpha * alpha, 1e-12) - 1.0), 0.05, 1000.0);
+}
+
 // The glow that a surface of GGX mirrors, W/sr/m2, to be multiplied with its Fresnel reflectance; the host's own BRDF
 // reflects `incident.direct`. `exponent` and its table are those of `Lobe::Ggx`: no power has GGX's long tails, and this
 // one's glow is within 30 % of it at any angle.

@@ -9,6 +9,7 @@ struct Light {
 
 layout(std140, set = 0, binding = 3) uniform Lights {
     vec4 extinction; // of the medium, 1/m; w unused
+    vec4 scattering; // the same
     uvec4 count;     // x alone
     Light lights[64];
 } lights;
@@ -32,6 +33,27 @@ vec3 light_irradiance(Light light, vec3 position, out vec3 towards)
     return light.intensity_scale.rgb * exp(-lights.extinction.rgb * distance) * (edge * edge * end / squared);
 }
 
+#if AIRGLOW_FOG
+// What the medium about a surface scatters onto it of a light, and the surface to the eye; see `lights_reflected`. A spot
+// shines into the medium as its light would, spread over the whole sphere.
+vec3 light_glow(Light light, vec3 base, vec2 surface, float alpha, vec3 f0, vec3 n, vec3 v, vec3 position)
+{
+    if (light.position_range.w < 0.0) { return vec3(0.0); }
+    vec3 path = light.position_range.xyz - position;
+    float reach = light.position_range.w;
+    if (reach > 0.0 && dot(path, path) > reach * reach) { return vec3(0.0); }
+    float scale = light.intensity_scale.w;
+    float share = scale > 0.0 ? 0.5 * (1.0 + light.axis_offset.w / scale) : 1.0;
+    vec3 scattered = share * light.intensity_scale.rgb;
+    FogIncident incident = fog_incident(lights.extinction.rgb, lights.scattering.rgb, vec3(0.0), scattered, path);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - dot(n, v), 5.0);
+    vec3 diffuse = (1.0 - fresnel) * (1.0 - surface.x) * base / LIGHTS_PI;
+    vec3 glow = diffuse * fog_lobe_glow(incident, n, int(material.flags >> 8u & 0xffu), 1.0);
+    int table = int(material.flags >> 16u);
+    return glow + fresnel * fog_ggx_glow(incident, reflect(-v, n), table, fog_exponent_of_ggx(alpha));
+}
+#endif
+
 // Radiance towards the eye; `surface` is metallic and roughness.
 vec3 lights_reflected(vec3 base, vec2 surface, vec3 normal, vec3 position, vec3 eye)
 {
@@ -44,6 +66,9 @@ vec3 lights_reflected(vec3 base, vec2 surface, vec3 normal, vec3 position, vec3 
     float nv = max(dot(n, v), 1e-4);
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < lights.count.x; ++i) {
+#if AIRGLOW_FOG
+        sum += light_glow(lights.lights[i], base, surface, alpha, f0, n, v, position);
+#endif
         vec3 l;
         vec3 irradiance = light_irradiance(lights.lights[i], position, l);
         float nl = dot(n, l);

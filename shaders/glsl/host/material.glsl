@@ -9,8 +9,9 @@ layout(push_constant) uniform Material {
     // Rows of the linear part of the texture coordinates' transform.
     vec4 uv_linear;
     vec2 uv_offset;
-    // 1: unlit, the base colour is the picture.
-    uint unlit;
+    // Lowest bit: unlit, the base colour is the picture. In fog, from bit 8 and 16 on: tables of the diffuse and the
+    // specular lobe.
+    uint flags;
     // Halves: metallic, roughness.
     uint surface;
 } material;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, BufferSlice, ColorAttachment, ComputePipeline,
-    ComputePipelineDesc, Context, DepthAttachment, DepthState, GpuError, GraphicsPipeline,
-    GraphicsPipelineDesc, Load, Record, Recorder, Rendering, Resources, VertexAttribute, VertexBufferLayout,
+    Binding, BindingDesc, BindingKind, Blend, ColorAttachment, ComputePipeline, ComputePipelineDesc, Context,
+    DepthAttachment, DepthState, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Load, Record, Recorder,
+    Rendering, Resources, VertexAttribute, VertexBufferLayout,
 };
 use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
 use bytemuck::{Pod, Zeroable};
@@ -22,6 +22,8 @@ const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub struct Pipelines {
     lit: GraphicsPipeline,
     ambient: GraphicsPipeline,
+    /// The same two in fog.
+    fogged: Option<[GraphicsPipeline; 2]>,
     sky: GraphicsPipeline,
     develop: ComputePipeline,
     hdr: vk::Format,
@@ -34,6 +36,15 @@ pub struct VertexColours {
     pub buffer: Handle<Buffer>,
     /// First byte and size for each instance.
     pub ranges: Vec<(u64, u64)>,
+}
+
+/// The scene's lights in a frame.
+#[derive(Clone)]
+pub struct Lights {
+    /// As the draw takes them.
+    pub constants: Arc<LightsConstants>,
+    /// Tables of the lobes that the materials reflect by in fog.
+    pub lobes: Option<Handle<Buffer>>,
 }
 
 /// A view of the scene as the forward draw leaves it.
@@ -91,11 +102,24 @@ struct DevelopConstants {
 
 impl Pipelines {
     /// Makes the pipelines; `hdr` is a float format with colour attachment and sampling, `lights` says whether the scene
-    /// has lights.
-    pub fn new(context: &Context, hdr: vk::Format, lights: bool) -> Result<Self, GpuError> {
+    /// has lights, `fogged` is the fragment stage in fog where they shine into a medium.
+    pub fn new(
+        context: &Context,
+        hdr: vk::Format,
+        lights: bool,
+        fogged: Option<&[u32]>,
+    ) -> Result<Self, GpuError> {
+        let fragment = shaders::scene_fragment(lights);
+        let bindings = &DRAW_BINDINGS[..if lights { 4 } else { 3 }];
+        let clear = |relight| scene_pipeline(context, hdr, relight, lights, &fragment, bindings);
+        let in_fog = |fragment| {
+            let of = |relight| scene_pipeline(context, hdr, relight, lights, fragment, &DRAW_BINDINGS);
+            Ok::<_, GpuError>([of(true)?, of(false)?])
+        };
         Ok(Self {
-            lit: scene_pipeline(context, hdr, true, lights)?,
-            ambient: scene_pipeline(context, hdr, false, lights)?,
+            lit: clear(true)?,
+            ambient: clear(false)?,
+            fogged: fogged.map(in_fog).transpose()?,
             sky: sky_pipeline(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
@@ -119,7 +143,7 @@ impl Pipelines {
         scene: &Arc<DeviceScene>,
         view: &SharedView,
         colours: Option<&VertexColours>,
-        lights: Option<&Arc<LightsConstants>>,
+        lights: Option<&Lights>,
         environment: Option<Handle<Image>>,
         size: [u32; 2],
     ) -> Drawn {
@@ -130,10 +154,18 @@ impl Pipelines {
         if let Some(environment) = &environment {
             pass.read(environment, Access::FragmentSampled);
         }
+        let lobes = lights.and_then(|lights| lights.lobes);
+        if let Some(lobes) = &lobes {
+            pass.read(lobes, Access::FragmentStorageRead);
+        }
         let image = |format| ImageDesc::new_2d(size[0], size[1], format);
         let hdr = pass.create_image("hdr", image(self.hdr), Access::ColorAttachmentWrite);
         let depth = pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite);
-        let lit = if colours.is_some() { &self.lit } else { &self.ambient };
+        let [lit, ambient] = match (&self.fogged, lobes) {
+            (Some([lit, ambient]), Some(_)) => [lit, ambient],
+            _ => [&self.lit, &self.ambient],
+        };
+        let lit = if colours.is_some() { lit } else { ambient };
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
         let (scene, view) = (Arc::clone(scene), view.clone());
         let (colours, lights) = (colours.cloned(), lights.cloned());
@@ -144,10 +176,16 @@ impl Pipelines {
                 depth: Some(DepthAttachment { view: &targets[1], load: Load::Clear(1.0), write: true }),
             })?;
             let view = recorder.upload(&[view.get()])?;
-            let lights = lights.as_deref().map(|lights| recorder.upload(&[*lights])).transpose()?;
+            let mut bound = vec![Binding::uniform(0, &view)];
+            if let Some(lights) = &lights {
+                bound.push(Binding::uniform(3, &recorder.upload(&[*lights.constants])?));
+            }
+            if let Some(lobes) = &lobes {
+                bound.push(Binding::storage(4, resources.buffer(lobes)?));
+            }
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
-                record_draw(recorder, resources, &pipeline, draw, &view, lights.as_ref(), colours)?;
+                record_draw(recorder, resources, &pipeline, draw, &bound, colours)?;
             }
             if let Some(environment) = &scene.environment {
                 recorder.bind_graphics(
@@ -225,16 +263,11 @@ fn record_draw(
     resources: &Resources<'_>,
     pipeline: &GraphicsPipeline,
     draw: &Draw,
-    view: &BufferSlice,
-    lights: Option<&BufferSlice>,
+    bound: &[Binding],
     colours: Option<(&VertexColours, (u64, u64))>,
 ) -> Result<(), GpuError> {
-    let mut bindings = vec![
-        Binding::uniform(0, view),
-        Binding::sampled(1, draw.base_colour.clone()),
-        Binding::sampler(2, &draw.sampler),
-    ];
-    bindings.extend(lights.map(|lights| Binding::uniform(3, lights)));
+    let mut bindings = bound.to_vec();
+    bindings.extend([Binding::sampled(1, draw.base_colour.clone()), Binding::sampler(2, &draw.sampler)]);
     recorder.bind_graphics(pipeline, &bindings)?;
     recorder.push_constants(&draw.material)?;
     recorder.bind_vertex_buffer(0, &draw.mesh.positions)?;
@@ -249,12 +282,13 @@ fn record_draw(
     recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
 }
 
-/// The last is for the lights, where there are any.
-const DRAW_BINDINGS: [BindingDesc; 4] = [
+/// The fourth is for the lights, where there are any, the last for their tables in fog.
+const DRAW_BINDINGS: [BindingDesc; 5] = [
     BindingDesc::new(0, BindingKind::UniformBuffer),
     BindingDesc::new(1, BindingKind::SampledImage),
     BindingDesc::new(2, BindingKind::Sampler),
     BindingDesc::new(3, BindingKind::UniformBuffer),
+    BindingDesc::new(4, BindingKind::StorageBuffer),
 ];
 
 fn scene_pipeline(
@@ -262,6 +296,8 @@ fn scene_pipeline(
     hdr: vk::Format,
     relight: bool,
     lights: bool,
+    fragment: &[u32],
+    bindings: &[BindingDesc],
 ) -> Result<GraphicsPipeline, GpuError> {
     let attribute = |location, format| VertexAttribute { location, format, offset: 0 };
     let position = [attribute(0, vk::Format::R32G32B32_SFLOAT)];
@@ -276,8 +312,8 @@ fn scene_pipeline(
     context.create_graphics_pipeline(&GraphicsPipelineDesc {
         name: if relight { "scene, relit" } else { "scene, ambient" },
         vertex: &shaders::scene_vertex(relight, lights),
-        fragment: Some(&shaders::scene_fragment(lights)),
-        bindings: if lights { &DRAW_BINDINGS } else { &DRAW_BINDINGS[..3] },
+        fragment: Some(fragment),
+        bindings,
         push_constant_size: size_of::<MaterialConstants>() as u32,
         vertex_buffers: &buffers,
         topology: vk::PrimitiveTopology::TRIANGLE_LIST,

@@ -1,15 +1,18 @@
 //! The scene's medium as the fog pass takes it.
 
-use airglow::fog::{self, Fog};
+use airglow::fog::{self, Fog, Lobe, LobeTables};
 use airglow::math::World;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Context, Record, Requirements};
 use airglow_graph::{Graph, LeftOut};
-use airglow_scene::{Camera, Light, LightKind, Projection, Scene};
+use airglow_scene::{Camera, Light, LightKind, Material, MaterialClass, Projection, Scene};
 use glam::Vec3;
+use half::f16;
 
 use super::draw::Drawn;
 use super::renderer::{Renderer, Settings};
+use super::scene::DeviceScene;
+use super::shaders;
 use crate::failure::{Failure, Outcome};
 
 /// Radius of a lamp, metres: a glTF light has none, and a point's glow has no end.
@@ -18,6 +21,8 @@ const LAMP_RADIUS: f64 = 0.05;
 /// The pass with the medium and the lights of a scene.
 pub struct SceneFog {
     pub(super) pass: Fog,
+    /// Tables of the lobes that the materials reflect its lights by.
+    pub(super) lobes: LobeTables,
     medium: fog::Medium,
     lights: Vec<fog::Light>,
 }
@@ -41,8 +46,26 @@ impl SceneFog {
             phase: fog::Phase::HenyeyGreenstein { g: f64::from(medium.anisotropy) },
             thinning: None,
         };
-        let lights = scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect();
-        Ok(Some(Self { pass: Fog::new(context, settings).map_err(Failure::work)?, medium, lights }))
+        let lights: Vec<fog::Light> = scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect();
+        let reflecting = scene.materials.iter().filter(|_| !lights.is_empty());
+        let lobes: Vec<Lobe> = reflecting.flat_map(lobes).flatten().collect();
+        let lobes = LobeTables::new(context, fog::Preset::Default, &lobes).map_err(Failure::work)?;
+        let pass = Fog::new(context, settings).map_err(Failure::work)?;
+        Ok(Some(Self { pass, lobes, medium, lights }))
+    }
+
+    /// The fragment stage of the forward draw, where surfaces reflect light out of the medium.
+    pub fn fragment(&self) -> Option<Vec<u32>> {
+        self.lobes.buffer().map(|_| shaders::scene_fragment_in_fog())
+    }
+
+    /// Tells each draw which tables its material reflects by.
+    pub fn name_tables(&self, scene: &Scene, device_scene: &mut DeviceScene) {
+        for (draw, instance) in device_scene.draws.iter_mut().zip(&scene.instances) {
+            let table = |lobe: Option<Lobe>| Some(self.lobes.find(lobe?)?.0);
+            draw.material
+                .set_tables(lobes(&scene.materials[instance.material]).map(|lobe| table(lobe).unwrap_or(0)));
+        }
     }
 
     /// The view of a camera in a picture of that aspect.
@@ -74,6 +97,14 @@ impl SceneFog {
         };
         fog::View { world, camera, medium: self.medium, lights: self.lights.clone() }
     }
+}
+
+/// The diffuse and the specular lobe of a material, as `host/lights.glsl` has them; an unlit one has none.
+fn lobes(material: &Material) -> [Option<Lobe>; 2] {
+    let lit = material.class != MaterialClass::Unlit;
+    let roughness = f64::from(f16::from_f32(material.roughness));
+    let alpha = (roughness * roughness).clamp(0.002, 1.0);
+    [lit.then_some(Lobe::Lambert), lit.then_some(Lobe::Ggx(alpha))]
 }
 
 /// A light inside the medium; a directional one is none.
@@ -109,7 +140,7 @@ pub fn add(
             return Ok(Vec::new());
         }
         (None, _) => {
-            graph.leave_out(left_out("the scene has no medium", "a [medium] in the scene file"));
+            graph.leave_out(no_medium());
             return Ok(Vec::new());
         }
     };
@@ -122,6 +153,11 @@ pub fn add(
         controls.extend(fogged.control);
     }
     Ok(controls)
+}
+
+/// The record of the pass being left out because there is nothing to see through.
+pub fn no_medium() -> LeftOut {
+    left_out("the scene has no medium", "a [medium] in the scene file")
 }
 
 /// The record of the pass being left out by the host.

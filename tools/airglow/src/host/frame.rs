@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
 use airglow_gpu::{Imports, Record, surface};
-use airglow_graph::{Access, Graph, Handle, Image};
+use airglow_graph::{Access, Buffer, Graph, Handle, Image};
 
-use super::draw::{self, Developed, Development, Drawn, Region, VertexColours};
+use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexColours};
 #[cfg(feature = "fog")]
 use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
@@ -104,9 +104,10 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let size = settings.size.map(|side| side * samples);
     let views: Vec<_> = renderer.views(settings, settings.turn).into_iter().map(SharedView::new).collect();
     let pipelines = &renderer.pipelines;
-    let lights = renderer.lights.map(|lights| match settings.without_fog {
-        true => Arc::new(lights.without_medium()),
-        false => Arc::new(lights),
+    let lobes = lobes(renderer, settings, &mut graph, &mut imports);
+    let lights = renderer.lights.map(|lights| {
+        let lights = if settings.without_fog { lights.without_medium() } else { lights };
+        Lights { constants: Arc::new(lights), lobes }
     });
     let mut drawn = Vec::with_capacity(views.len());
     for view in &views {
@@ -152,4 +153,22 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             window,
         },
     })
+}
+
+/// The tables that the materials' lobes need in fog.
+#[cfg(feature = "fog")]
+fn lobes(
+    renderer: &Renderer<'_>,
+    settings: &Settings,
+    graph: &mut Graph<Record>,
+    imports: &mut Imports,
+) -> Option<Handle<Buffer>> {
+    let fog = renderer.fog.as_ref().filter(|_| !settings.without_fog)?;
+    fog.lobes.add(graph, imports)
+}
+
+/// There is no fog.
+#[cfg(not(feature = "fog"))]
+fn lobes(_: &Renderer<'_>, _: &Settings, _: &mut Graph<Record>, _: &mut Imports) -> Option<Handle<Buffer>> {
+    None
 }

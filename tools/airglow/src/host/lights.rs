@@ -1,6 +1,6 @@
 //! The scene's point, spot and directional lights, as the forward draw takes them.
 
-use airglow_scene::{Light, LightKind, Scene};
+use airglow_scene::{Light, LightKind, Medium, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -20,6 +20,7 @@ struct LightConstants {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct LightsConstants {
     extinction: [f32; 4],
+    scattering: [f32; 4],
     count: [u32; 4],
     lights: [LightConstants; MAX_LIGHTS],
 }
@@ -35,14 +36,17 @@ impl LightsConstants {
             *constants = LightConstants::new(light);
         }
         let count = [scene.lights.len().min(MAX_LIGHTS) as u32, 0, 0, 0];
-        let extinction = scene.medium.map_or(Vec3::ZERO, |medium| medium.extinction.into());
-        Some(Self { extinction: extinction.extend(0.0).to_array(), count, lights })
+        let of_medium =
+            |value: fn(Medium) -> Vec3| scene.medium.map_or(Vec3::ZERO, value).extend(0.0).to_array();
+        let extinction = of_medium(|medium| medium.extinction.into());
+        let scattering = of_medium(|medium| Vec3::from(medium.extinction) * Vec3::from(medium.albedo));
+        Some(Self { extinction, scattering, count, lights })
     }
 
     /// The same in clear air.
     #[must_use]
     pub fn without_medium(self) -> Self {
-        Self { extinction: [0.0; 4], ..self }
+        Self { extinction: [0.0; 4], scattering: [0.0; 4], ..self }
     }
 }
 

@@ -144,7 +144,9 @@ impl<'d> Renderer<'d> {
     /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
     pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
         let context = device.context();
-        let device_scene = device.run(|recorder| scene::upload(recorder, scene)).map_err(Failure::work)?;
+        #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only fog names tables"))]
+        let mut device_scene =
+            device.run(|recorder| scene::upload(recorder, scene)).map_err(Failure::work)?;
         let ambient = match &scene.environment {
             Some(environment) => {
                 EnvironmentSamples::new(environment).map_err(Failure::input)?.mean_radiance()
@@ -158,6 +160,16 @@ impl<'d> Renderer<'d> {
             )));
         }
         let [linear, display] = targets(device, picture)?;
+        #[cfg(feature = "fog")]
+        let fog = SceneFog::new(context, scene, hdr)?;
+        #[cfg(feature = "fog")]
+        fog.iter().for_each(|fog| fog.name_tables(scene, &mut device_scene));
+        #[cfg(feature = "fog")]
+        let fogged = fog.as_ref().and_then(SceneFog::fragment);
+        #[cfg(not(feature = "fog"))]
+        let fogged: Option<Vec<u32>> = None;
+        let lights = !scene.lights.is_empty();
+        let pipelines = Pipelines::new(context, hdr, lights, fogged.as_deref()).map_err(Failure::work)?;
         Ok(Self {
             device,
             scene: Arc::new(device_scene),
@@ -169,10 +181,10 @@ impl<'d> Renderer<'d> {
             }),
             ambient,
             lighting: Lighting::new(device, scene, source)?,
-            pipelines: Pipelines::new(context, hdr, !scene.lights.is_empty()).map_err(Failure::work)?,
+            pipelines,
             lights: LightsConstants::of_scene(scene),
             #[cfg(feature = "fog")]
-            fog: SceneFog::new(context, scene, hdr)?,
+            fog,
             unread: unread::unread(scene),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,

@@ -64,7 +64,7 @@ pub struct MaterialConstants {
     emissive_cutoff: [f32; 4],
     uv_linear: [f32; 4],
     uv_offset: [f32; 2],
-    unlit: u32,
+    flags: u32,
     surface: u32,
 }
 
@@ -149,6 +149,12 @@ fn sampler(context: &Context, material: &Material) -> Result<Sampler, GpuError> 
 }
 
 impl MaterialConstants {
+    /// Names the tables of the diffuse and of the specular lobe.
+    #[cfg(feature = "fog")]
+    pub fn set_tables(&mut self, [diffuse, specular]: [u32; 2]) {
+        self.flags = self.flags & 1 | (diffuse & 0xff) << 8 | specular << 16;
+    }
+
     fn new(world_from_object: glam::Mat4, material: &Material) -> Self {
         let rows = material.base_color_texture.map_or(IDENTITY_UV, |texture| texture.transform);
         let cutoff = match material.alpha {
@@ -162,7 +168,7 @@ impl MaterialConstants {
             emissive_cutoff: [red, green, blue, cutoff],
             uv_linear: [rows[0][0], rows[0][1], rows[1][0], rows[1][1]],
             uv_offset: [rows[0][2], rows[1][2]],
-            unlit: u32::from(material.class == MaterialClass::Unlit),
+            flags: u32::from(material.class == MaterialClass::Unlit),
             surface: [material.metallic, material.roughness]
                 .map(|value| u32::from(f16::from_f32(value).to_bits()))
                 .into_iter()

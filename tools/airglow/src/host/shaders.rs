@@ -1,11 +1,15 @@
 //! The demo host's own SPIR-V, as `cargo run -p xtask -- shaders` makes it.
 
-/// The words of a module in `shaders/spirv/host`.
+/// The words of a module in `shaders/spirv/host`, or in a room's folder.
 macro_rules! module {
     ($name:literal) => {
+        module!("host/", $name)
+    };
+    ($room:literal, $name:literal) => {
         bytemuck::pod_collect_to_vec::<u8, u32>(include_bytes!(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/../../shaders/spirv/host/",
+            "/../../shaders/spirv/",
+            $room,
             $name,
             ".spv"
         )))
@@ -26,6 +30,12 @@ pub fn scene_vertex(relight: bool, lights: bool) -> Vec<u32> {
 /// The fragment stage of the forward draw, without or with the scene's lights.
 pub fn scene_fragment(lights: bool) -> Vec<u32> {
     if lights { module!("scene_fragment.HOST_LIGHTS") } else { module!("scene_fragment") }
+}
+
+/// The fragment stage of the forward draw with the scene's lights in fog.
+#[cfg(feature = "fog")]
+pub fn scene_fragment_in_fog() -> Vec<u32> {
+    module!("fog/", "scene")
 }
 
 /// The vertex stage of the background.
