@@ -67,6 +67,6 @@ pub use frame::{Counts, Fogged, Frame, View};
 pub use kernels::BINDINGS;
 pub use light::{Bounds, Cone, Light};
 pub use lobes::{LOBE_BINDINGS, Lobe, LobeTables, MAX_EXPONENT};
-pub use medium::{Medium, Phase, PhaseKind, Thinning, VISIBILITY_CONTRAST};
+pub use medium::{MAX_G, Medium, Phase, PhaseKind, Thinning, VISIBILITY_CONTRAST};
 pub use pack::{FrameConstants, LightConstants};
 pub use settings::{MAX_LIGHTS, Preset, Settings};

@@ -9,6 +9,9 @@ use crate::error::check;
 /// (Koschmieder 1924).
 pub const VISIBILITY_CONTRAST: f64 = 0.02;
 
+/// The largest |g|: as far as the error of the taps is held to quadrature.
+pub const MAX_G: f64 = 0.999;
+
 /// A kind of phase function: which kernel there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PhaseKind {
@@ -29,14 +32,14 @@ pub enum Phase {
     Isotropic,
     /// The sum of `w[k] cosine^k`: the weights hold the 1 / (4 pi) (Sun 2008, eq. 3.18). Nowhere negative.
     Polynomial([f64; 4]),
-    /// Henyey and Greenstein 1941; g, the mean cosine, is between -1 and 1.
+    /// Henyey and Greenstein 1941; g, the mean cosine, is at most [`MAX_G`] from 0.
     HenyeyGreenstein {
         /// Mean cosine.
         g: f64,
     },
     /// Draine 2003, eq. 4: Rayleigh's shape at g = 0, alpha = 1.
     Draine {
-        /// Between -1 and 1.
+        /// At most [`MAX_G`] from 0.
         g: f64,
         /// From 0 on.
         alpha: f64,
@@ -73,15 +76,24 @@ impl Phase {
     /// Its value, 1/sr.
     #[must_use]
     pub fn value(&self, cosine: f64) -> f64 {
+        self.at([0.5 * (1.0 + cosine), 0.5 * (1.0 - cosine)])
+    }
+
+    /// Its value, 1/sr, by the squared cosine and sine of half the angle: they tell angles within a peak from each other
+    /// whose cosines are rounded to 1.
+    #[must_use]
+    pub fn at(&self, halves: [f64; 2]) -> f64 {
+        let cosine = halves[0] - halves[1];
         match *self {
             Self::Isotropic => 0.25 / PI,
             Self::Polynomial([a, b, c, d]) => a + cosine * (b + cosine * (c + cosine * d)),
             Self::HenyeyGreenstein { g } => {
-                0.25 / PI * (1.0 - g * g) / ((1.0 - g).powi(2) + 2.0 * g * (1.0 - cosine)).powf(1.5)
+                let squared = (1.0 - g).powi(2) * halves[0] + (1.0 + g).powi(2) * halves[1];
+                0.25 / PI * (1.0 - g * g) / squared.powf(1.5)
             }
             Self::Draine { g, alpha } => {
                 let shape = (1.0 + alpha * cosine * cosine) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
-                shape * Self::HenyeyGreenstein { g }.value(cosine)
+                shape * Self::HenyeyGreenstein { g }.at(halves)
             }
         }
     }
@@ -95,7 +107,7 @@ impl Phase {
     }
 
     fn check(&self) -> Result<(), FogError> {
-        let inside = "a number between -1 and 1";
+        let inside = "a number from -0.999 to 0.999";
         match *self {
             Self::Isotropic => Ok(()),
             Self::Polynomial(weights) => {
@@ -109,9 +121,11 @@ impl Phase {
                     "weights whose polynomial is nowhere negative",
                 )
             }
-            Self::HenyeyGreenstein { g } => check(|| "medium.phase.g".to_owned(), g, g.abs() < 1.0, inside),
+            Self::HenyeyGreenstein { g } => {
+                check(|| "medium.phase.g".to_owned(), g, g.abs() <= MAX_G, inside)
+            }
             Self::Draine { g, alpha } => {
-                check(|| "medium.phase.g".to_owned(), g, g.abs() < 1.0, inside)?;
+                check(|| "medium.phase.g".to_owned(), g, g.abs() <= MAX_G, inside)?;
                 let sound = alpha >= 0.0 && alpha.is_finite();
                 check(|| "medium.phase.alpha".to_owned(), alpha, sound, "a number from 0 on")
             }

@@ -33,17 +33,28 @@ struct FogLight {
     vec4 high;
 };
 
-float fog_phase(vec4 values, float cosine)
+float fog_phase(vec4 values, vec2 halves)
 {
 #if defined(PHASE_KIND_POLYNOMIAL)
-    return phase_polynomial(values, cosine);
+    return phase_polynomial(values, halves);
 #elif defined(PHASE_KIND_HENYEY_GREENSTEIN)
-    return phase_henyey_greenstein(values.x, cosine);
+    return phase_henyey_greenstein(values.x, halves);
 #elif defined(PHASE_KIND_DRAINE)
-    return phase_draine(values.x, values.y, cosine);
+    return phase_draine(values.x, values.y, halves);
 #else
     return phase_isotropic();
 #endif
+}
+
+// The path whose scale suits the phase function. Henyey and Greenstein's lobe over the distances of the paths is
+// (off^2 + m^2)^(1/2) / ((1 - g)^2 off^2 + (1 + g)^2 m^2)^(3/2): its size is not off but off (1 - g) / (1 + g).
+FogPath fog_suited(FogPath path, vec4 phase)
+{
+#if defined(PHASE_KIND_HENYEY_GREENSTEIN) || defined(PHASE_KIND_DRAINE)
+    float ratio = (1.0 - phase.x) / (1.0 + phase.x);
+    path.off_squared *= ratio * ratio;
+#endif
+    return path;
 }
 
 // The smallest extinction of a channel that scatters at all.
@@ -112,16 +123,23 @@ float fog_falloff(FogLight light, vec3 towards, float distance)
     return factor;
 }
 
-// The airlight of one light along a ray of unit direction up to a surface at `distance`, which may be infinite
-// (above 1e30), W/sr/m2. `index` is what FOG_VISIBILITY gets.
-vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, float distance)
+// Where a spot's intensity has a kink within the part of the ray that it reaches: the ends of its plateau, or the
+// beginning of the part twice where it has none there.
+vec2 fog_plateau(FogLight light, vec3 direction, vec2 interval)
 {
-    vec2 interval = fog_interval(light, direction, distance);
-    if (interval.x >= interval.y) { return vec3(0.0); }
+    if (light.axis_cosine.w <= -1.5) { return interval.xx; }
+    float cosine = (1.0 - light.falloff_range.y) / light.falloff_range.x;
+    if (cosine >= 1.0) { return interval.xx; }
+    vec2 plateau = fog_in_cone(interval, light.position_radius.xyz, light.axis_cosine.xyz, cosine, direction);
+    return plateau.x < plateau.y ? plateau : interval.xx;
+}
+
+// The integral over a part of the ray, without what all parts share: scattering coefficient and intensity.
+vec3 fog_part(FogMedium medium, FogLight light, int index, vec3 direction, FogPath path, vec2 interval)
+{
     vec3 position = light.position_radius.xyz;
-    FogPath path = fog_path(position, direction, light.position_radius.w);
     FogSegment segment = fog_segment(path, interval.x, interval.y - interval.x);
-    FogTaps taps = fog_taps(path, segment, fog_least(medium.extinction));
+    FogTaps taps = fog_taps(fog_suited(path, medium.phase), segment, fog_least(medium.extinction));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < FOG_TAPS; ++i) {
         FogTap tap = fog_tap(taps, path, segment, i);
@@ -130,7 +148,7 @@ vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, f
         vec3 point = at * direction;
         float to_light = 0.5 * (m + path.off_squared / m);
         float weight = tap.weight * fog_falloff(light, point - position, to_light);
-        weight *= fog_phase(medium.phase, fog_cosine(path, m));
+        weight *= fog_phase(medium.phase, fog_halves(path, m));
 #ifdef FOG_VISIBILITY
         weight *= FOG_VISIBILITY(index, point);
 #endif
@@ -144,6 +162,24 @@ vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, f
 #else
         sum += weight * exp(-medium.extinction * (segment.before + tap.excess));
 #endif
+    }
+    return sum;
+}
+
+// The airlight of one light along a ray of unit direction up to a surface at `distance`, which may be infinite
+// (above 1e30), W/sr/m2. `index` is what FOG_VISIBILITY gets.
+vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, float distance)
+{
+    vec2 interval = fog_interval(light, direction, distance);
+    if (interval.x >= interval.y) { return vec3(0.0); }
+    FogPath path = fog_path(light.position_radius.xyz, direction, light.position_radius.w);
+    vec2 plateau = fog_plateau(light, direction, interval);
+    float ends[4] = float[](interval.x, plateau.x, plateau.y, interval.y);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 3; ++i) {
+        if (ends[i] < ends[i + 1]) {
+            sum += fog_part(medium, light, index, direction, path, vec2(ends[i], ends[i + 1]));
+        }
     }
     return medium.scattering * light.intensity_reach.rgb * sum;
 }

@@ -52,10 +52,10 @@ FogSegment fog_segment(FogPath path, float begin, float extent)
     return FogSegment(near.x, before, fog_growth(extent, near, fog_reckon(path, begin - path.along + extent)));
 }
 
-// The cosine of the scattering angle where m is reached.
-float fog_cosine(FogPath path, float m)
+// The squared cosine and sine of half the scattering angle where m is reached.
+vec2 fog_halves(FogPath path, float m)
 {
-    return (path.off_squared - m * m) / (path.off_squared + m * m);
+    return vec2(path.off_squared, m * m) / (path.off_squared + m * m);
 }
 
 // The distance along the ray where m is reached.

@@ -45,7 +45,8 @@ struct FogTap {
     float weight; // with 2 / d^2 in it
 };
 
-// `least` is the smallest extinction that the taps are to serve, 1/m.
+// `least` is the smallest extinction that the taps are to serve, 1/m. A `path` that is said to be off the light by another
+// distance gives the taps that other scale.
 FogTaps fog_taps(FogPath path, FogSegment segment, float least)
 {
     float excess = min(segment.excess, FOG_CUT / max(least, 1e-30));

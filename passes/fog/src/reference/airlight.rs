@@ -55,6 +55,8 @@ pub struct Place {
     pub from_light: f64,
     /// Cosine of the scattering angle, 1 forward.
     pub cosine: f64,
+    /// Squared cosine and sine of half of it.
+    pub halves: [f64; 2],
 }
 
 /// `∫ exp(-β (x + d)) phase / d² dx` for x from `near` to `far` metres (which may be infinite), d the distance of the
@@ -68,7 +70,7 @@ pub fn airlight(extinction: f64, sight: Sight, near: f64, far: f64, phase: Phase
     // Beyond this distance from the foot the path is longer than the shortest by SPENT / β.
     let spent = sight.along + 0.5 * (SPENT / extinction + ahead + sight.distance(near)).max(0.0);
     integrate(sight, near, far.min(spent), &[extinction.recip()], |place| {
-        (-extinction * (place.from_eye + place.from_light)).exp() * phase.value(place.cosine)
+        (-extinction * (place.from_eye + place.from_light)).exp() * phase.at(place.halves)
     })
 }
 
@@ -105,7 +107,13 @@ pub fn integrate(
     for pair in breaks.windows(2) {
         let integrand = |ahead: f64| {
             let from_light = sight.offset.hypot(ahead);
-            let place = Place { from_eye: ahead + sight.along, from_light, cosine: -ahead / from_light };
+            // d + |ahead| and d - |ahead|, of which the product is offset².
+            let sum = from_light + ahead.abs();
+            let less = sight.offset / sum * sight.offset;
+            let [forward, back] = if ahead < 0.0 { [sum, less] } else { [less, sum] };
+            let halves = [0.5 * forward / from_light, 0.5 * back / from_light];
+            let cosine = -ahead / from_light;
+            let place = Place { from_eye: ahead + sight.along, from_light, cosine, halves };
             f(place) / from_light / from_light
         };
         total += adaptive(integrand, pair[0], pair[1], TOLERANCE)?.value;

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::eval::AirlightRow;
+use crate::medium::MAX_G;
 use crate::{Phase, Preset};
 
 /// An isotropic row at the reference preset with a point light.
@@ -52,7 +53,10 @@ pub(super) fn rows() -> Vec<(String, AirlightRow)> {
     for phase in [
         Phase::HenyeyGreenstein { g: 0.8 },
         Phase::HenyeyGreenstein { g: -0.8 },
+        Phase::HenyeyGreenstein { g: MAX_G },
+        Phase::HenyeyGreenstein { g: -MAX_G },
         Phase::Draine { g: 0.0, alpha: 1.0 },
+        Phase::Draine { g: 0.99, alpha: 1.0 },
         Phase::Polynomial([0.25 / PI, -0.2 / PI, 0.0, 0.0]),
     ] {
         for gamma in [1e-4, 1.0, PI - 1e-4] {

@@ -18,10 +18,6 @@ struct Case {
     truth: f64,
 }
 
-/// The bound on the relative error of a spot light: its soft edge has a kink at the inner angle, which one rule over the
-/// whole stretch within the cone does not see.
-const SPOT_BOUND: f64 = 1e-2;
-
 const LIGHT: DVec3 = DVec3::new(3.0, 4.0, -9.0);
 const EXTINCTION: f64 = 0.1;
 
@@ -53,11 +49,7 @@ pub(super) fn cases(bench: &Bench<'_>, chosen: impl Fn(&str) -> bool) -> Result<
     for Case { name, ray, channel, truth } in all()?.into_iter().filter(|case| chosen(&case.name)) {
         let found = bench.airlight(&settings(&ray.medium, Preset::Reference), &[ray])?;
         let value = found.first().map_or(f64::NAN, |rgb| f64::from(rgb[channel]));
-        let mut outcome = Outcome::of_value(name, format!("{ray:?}"), value, truth);
-        if ray.light.cone.is_some() {
-            outcome.bound = SPOT_BOUND;
-        }
-        outcomes.push(outcome);
+        outcomes.push(Outcome::of_value(name, format!("{ray:?}"), value, truth));
     }
     Ok(outcomes)
 }
