@@ -7,6 +7,7 @@ pub mod conformance;
 pub mod data;
 pub mod device;
 pub mod golden;
+pub mod heap;
 pub mod plan;
 pub mod reflect;
 pub mod shim;

@@ -7,34 +7,10 @@ use airglow_gpu::{
 };
 use airglow_graph::{Access, BufferDesc, Graph, PassKind};
 use airglow_tests::device::fixture;
+use airglow_tests::heap::{Counting, allocations};
 use airglow_tests::plan::compile;
 use airglow_tests::spirv::words;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::time::Duration;
-
-thread_local! {
-    /// Allocations of this thread.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-/// The system's allocator, counting.
-struct Counting;
-
-// SAFETY: every call is the system allocator's; counting touches a thread-local that allocates nothing.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that is ending has no count any more.
-        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promise is passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -80,10 +56,10 @@ fn a_frame_allocates_nothing_after_warm_up() {
     let mut fastest = Duration::MAX;
     for frame in 0..warm_up + measured {
         let recorded = frames.frame(FrameSemaphores::default(), |command_buffer: vk::CommandBuffer| {
-            let before = COUNT.get();
+            let before = allocations();
             // SAFETY: the loop's command buffer is recording; the plan imports nothing.
             let recorded = unsafe { execution.record(context, command_buffer, &imports, Some(&mut timing)) };
-            allocations[usize::from(frame >= warm_up)] += COUNT.get() - before;
+            allocations[usize::from(frame >= warm_up)] += allocations() - before;
             recorded
         });
         fastest = fastest.min(recorded.unwrap().cpu);

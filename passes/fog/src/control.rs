@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use airglow_graph::LeftOut;
+
 use crate::FogError;
 use crate::frame::{Counts, View};
 use crate::pack::{FrameConstants, Packed, pack};
@@ -40,6 +42,23 @@ impl Control {
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.lock().counts
+    }
+
+    /// The record of the lights that the view set last does without; `None` without such. No part of a plan, which stays
+    /// while lights come and go.
+    #[must_use]
+    pub fn left_out(&self) -> Option<LeftOut> {
+        let Counts { evaluated, left_out } = self.counts();
+        (left_out > 0).then(|| LeftOut {
+            what: format!("fog of {left_out} of {} lights", evaluated + left_out),
+            why: format!(
+                "no pixel can get {} W/sr/m2 of airlight, pre-exposed, from them",
+                self.settings.bound
+            ),
+            bytes: 0,
+            time: None,
+            would_return: "a stronger or nearer light, or a smaller Settings::bound".to_owned(),
+        })
     }
 
     pub(crate) fn constants(&self) -> FrameConstants {

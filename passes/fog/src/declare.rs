@@ -4,12 +4,13 @@ use airglow_gpu::Record;
 use airglow_graph::{Graph, Handle, Image, ImageDesc, PassKind};
 
 use crate::FogError;
-use crate::fog::{ACCESSES, Bindings, Fog, Prepared, lights_left_out};
+use crate::fog::{ACCESSES, Bindings, Fog, Prepared};
 use crate::frame::{Counts, Fogged, Frame};
 
 impl Fog {
     /// Adds the pass to a graph. The plan may be recorded again in later frames while the size stays and the medium is
-    /// not clear; [`Fogged::control`] changes the view in between.
+    /// not clear; [`Fogged::control`] changes the view in between. Lights come and go within the plan: which of them are
+    /// left out is said by the control, not by the plan.
     ///
     /// # Errors
     /// As [`Fog::prepare`].
@@ -18,7 +19,9 @@ impl Fog {
         graph: &mut Graph<Record>,
         frame: &Frame<Handle<Image>>,
     ) -> Result<Fogged<Handle<Image>>, FogError> {
-        let prepared = match self.prepare(frame)? {
+        let prepared = self.prepare(frame)?;
+        graph.pipelines("fog", 1);
+        let prepared = match prepared {
             Prepared::Pass(pass) => pass,
             Prepared::LeftOut(left_out) => {
                 let colour = graph.forward(frame.surface, left_out);
@@ -27,8 +30,6 @@ impl Fog {
             }
         };
         let counts = prepared.control.counts();
-        let bound = self.settings().bound / frame.view.world.pre_exposure;
-        lights_left_out(counts, bound).into_iter().for_each(|left_out| graph.leave_out(left_out));
         let [(_, reads), (_, reads_depth), (_, writes)] = ACCESSES;
         let (surface, depth) = (frame.surface, frame.depth);
         let mut pass = graph.pass("fog airlight", PassKind::Graphics);

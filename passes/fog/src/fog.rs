@@ -11,7 +11,7 @@ use airglow_graph::{Access, LeftOut};
 
 use crate::FogError;
 use crate::control::Control;
-use crate::frame::{Counts, Frame};
+use crate::frame::Frame;
 use crate::kernels;
 use crate::settings::Settings;
 
@@ -61,7 +61,7 @@ impl Fog {
     /// What a device must offer for these settings, to be joined to those of other passes before it is made.
     #[must_use]
     pub fn requirements(settings: &Settings) -> Requirements {
-        let mut requirements = Requirements::engine();
+        let mut requirements = Requirements::engine().with_descriptors(&kernels::BINDINGS);
         requirements.formats.push(FormatNeed {
             format: settings.format,
             usage: vk::FormatFeatureFlags::COLOR_ATTACHMENT,
@@ -117,18 +117,6 @@ impl Fog {
         }
         Ok(Prepared::Pass(Pass { control, pipeline: self.pipeline.clone() }))
     }
-}
-
-/// The record of the lights that a frame does without; `None` without such.
-pub(crate) fn lights_left_out(counts: Counts, bound: f64) -> Option<LeftOut> {
-    let Counts { evaluated, left_out } = counts;
-    (left_out > 0).then(|| LeftOut {
-        what: format!("fog of {left_out} of {} lights", evaluated + left_out),
-        why: format!("no pixel can get {bound} W/sr/m2 of airlight from them"),
-        bytes: 0,
-        time: None,
-        would_return: "a stronger or nearer light, or a smaller Settings::bound".to_owned(),
-    })
 }
 
 impl Pass {
