@@ -1,113 +1,19 @@
-//! Plays a host around a room: a device of its own, made with the room's requirements patched into its own `pNext`
-//! chain, its own images and buffers, its own commands before and after. The room is recorded by both roads.
+//! The conformance kit on a device that a host makes itself, with the room's requirements patched into its own `pNext`
+//! chain, on the test device's instance, whose validation hears all devices.
 
-mod host;
-mod roads;
+use crate::device::{open, stated};
+use airglow_gpu::ash::{self, vk};
+use airglow_gpu::open::OpenDevice;
+use airglow_gpu::{Context, FeatureSet, FeatureStorage, Options, Requirements, patch_features};
+use std::ffi::c_void;
 
-use crate::shim::{ACTIONS, Call, STATE};
-use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, Context, Image, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph as graph;
-use airglow_graph::{Access, BufferDesc, Graph, Handle, ImageDesc, State};
-use std::error::Error;
-
-pub use host::{Host, HostDevice};
-
-/// What a room says when it refuses.
-pub type Refusal = Box<dyn Error>;
-
-/// What a host's resource is, and what it holds before the room.
-#[derive(Clone, Debug)]
-pub enum Content {
-    /// An image and its texels, tightly packed.
-    Image(ImageDesc, Vec<u8>),
-    /// A buffer and its first bytes.
-    Buffer(BufferDesc, Vec<u8>),
-}
-
-/// A resource of the host that a room uses.
-#[derive(Clone, Debug)]
-pub struct HostResource {
-    /// Its name.
-    pub name: &'static str,
-    /// What it is.
-    pub content: Content,
-    /// The state in which the host hands it over.
-    pub entry: State,
-    /// The state in which the host wants it back.
-    pub exit: State,
-}
-
-/// A host's resource in a graph.
-#[derive(Clone, Copy)]
-pub enum Named {
-    /// A buffer.
-    Buffer(Handle<graph::Buffer>),
-    /// An image.
-    Image(Handle<graph::Image>),
-}
-
-/// A host's resource on the device.
-#[derive(Clone)]
-pub enum Given {
-    /// A buffer.
-    Buffer(Buffer),
-    /// An image.
-    Image(Image),
-}
-
-/// A room as its host sees it. Lists of resources are all in the order of [`Room::resources`].
-pub trait Room {
-    /// What it needs of the device.
-    fn requirements(&self) -> Requirements;
-
-    /// The host's resources that it uses.
-    fn resources(&self) -> Vec<HostResource>;
-
-    /// Adds it to a graph; resources of its own go to `imports`.
-    ///
-    /// # Errors
-    /// Whatever the room refuses.
-    fn add(
-        &mut self,
-        context: &Context,
-        graph: &mut Graph<Record>,
-        imports: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal>;
-
-    /// Prepares the road without a graph: for each resource the first and the last access, none for what it leaves
-    /// alone.
-    ///
-    /// # Errors
-    /// Whatever the room refuses.
-    fn accesses(&mut self, context: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal>;
-
-    /// Records what [`Room::accesses`] prepared, with barriers between its own steps alone.
-    ///
-    /// # Errors
-    /// Whatever the room refuses.
-    fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal>;
-}
-
-/// How a room is recorded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Road {
-    /// By the plan of our graph.
-    Graph,
-    /// By `accesses` and `record`, within the host's own frame graph.
-    Record,
-}
-
-/// Bytes that the host's buffers hold after the room, in order; images are skipped.
-pub type Outputs = Vec<Vec<u8>>;
+pub use airglow_conformance::*;
 
 /// Runs a room made by `make` on a device of its own by both roads, asserts what a host relies on, and returns the bytes
 /// of its buffers.
 ///
 /// # Panics
-/// If the room refuses, the roads differ, layouts or state are not as promised, something stays alive, or validation
-/// says anything.
+/// As [`conform_on`], and if validation says anything.
 pub fn conform<R: Room>(
     make: impl Fn(&Context) -> R,
     requirements: &Requirements,
@@ -121,51 +27,44 @@ pub fn conform<R: Room>(
 /// # Panics
 /// As [`conform`].
 pub fn conform_adopting<R: Room>(
-    make: impl Fn(&Context, &HostDevice) -> R,
+    make: impl Fn(&Context, &HostDevice<'_>) -> R,
     requirements: &Requirements,
     options: &Options,
 ) -> Outputs {
-    let [by_graph, by_record] = [Road::Graph, Road::Record].map(|road| {
-        let host = Host::new(requirements);
-        let (outputs, calls) = host.run(&make, options, road);
-        assert_state(&calls, road);
-        host.finish();
-        outputs
-    });
-    assert_eq!(by_graph.len(), by_record.len());
-    for (index, (by_graph, by_record)) in by_graph.iter().zip(&by_record).enumerate() {
-        let differs = by_graph.iter().zip(by_record).position(|(a, b)| a != b);
-        assert_eq!(differs, None, "buffer {index}: the roads differ from that byte on");
-        assert_eq!(by_graph.len(), by_record.len());
-    }
-    by_graph
+    let open = open(requirements);
+    let (device, features) = device(&open, requirements);
+    let host = HostDevice { features, ..stated(&open, &device) };
+    // SAFETY: the device was just made, as stated, and is no one else's.
+    let outputs = unsafe { conform_on(&host, requirements, options, make) };
+    // SAFETY: the device is idle, and everything made on it is gone.
+    unsafe { device.destroy_device(None) };
+    let said: Vec<_> = open.messages().take().iter().map(ToString::to_string).collect();
+    assert!(said.is_empty(), "validation said:\n{}", said.join("\n"));
+    outputs
 }
 
-/// Only documented commands, each scope closed again.
-fn assert_state(calls: &[Call], road: Road) {
-    assert!(!calls.is_empty(), "{road:?}: nothing was recorded");
-    for call in calls {
-        let known = STATE.contains(&call.name) || ACTIONS.contains(&call.name);
-        assert!(known, "{road:?}: {} is in neither list", call.name);
-        if call.name == "vkCmdBindDescriptorSets" {
-            assert_eq!(call.numbers[1..], [0, 1], "{road:?}: set 0 alone");
-        }
-    }
-    for [begin, end] in [
-        ["vkCmdBeginRendering", "vkCmdEndRendering"],
-        ["vkCmdBeginDebugUtilsLabelEXT", "vkCmdEndDebugUtilsLabelEXT"],
-    ] {
-        let count = |name| calls.iter().filter(|call| call.name == name).count();
-        assert_eq!(count(begin), count(end), "{road:?}: {begin} without {end}");
-    }
-}
-
-/// The layout that the commands leave `image` in, or `entry` if no barrier names it.
-fn layout_after(calls: &[Call], image: vk::Image, entry: vk::ImageLayout) -> vk::ImageLayout {
-    let barriers = calls.iter().flat_map(|call| &call.images).filter(|barrier| barrier.image == image);
-    barriers.fold(entry, |before, barrier| {
-        let matches = barrier.old_layout == before || barrier.old_layout == vk::ImageLayout::UNDEFINED;
-        assert!(matches, "a barrier expects {:?}, the image is in {before:?}", barrier.old_layout);
-        barrier.new_layout
-    })
+/// A second device: the host chains what it wants itself, and has the room's features patched in.
+fn device(open: &OpenDevice, requirements: &Requirements) -> (ash::Device, FeatureSet) {
+    let (instance, requirements) = (open.instance(), Requirements::engine().and(requirements));
+    let mut own = vk::PhysicalDeviceVulkan12Features { timeline_semaphore: vk::TRUE, ..Default::default() };
+    let mut chain: *mut c_void = (&raw mut own).cast();
+    let mut core = vk::PhysicalDeviceFeatures::default();
+    let mut storage = FeatureStorage::default();
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(open.queue_family())
+        .queue_priorities(&[1.0])];
+    // SAFETY: live handles; the chain is valid and outlived by its storage; what is enabled is supported.
+    let made = unsafe {
+        let supported = FeatureSet::supported(instance, open.physical_device());
+        let wanted = requirements.features_to_enable(supported);
+        patch_features(&mut chain, Some(&mut core), wanted, vk::API_VERSION_1_3, &mut storage)
+            .expect("a plain chain");
+        let features = FeatureSet::of_chain(chain, Some(&core));
+        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&core);
+        let info = vk::DeviceCreateInfo { p_next: chain, ..info };
+        let device = instance.create_device(open.physical_device(), &info, None).expect("a second device");
+        (device, features)
+    };
+    assert_eq!(own.timeline_semaphore, vk::TRUE, "what the host wanted stays");
+    made
 }

@@ -4,6 +4,8 @@
 //! same bits; `AIRGLOW_TEST_DEVICE` (an index, part of a name, or a kind) chooses another on purpose, and
 //! `AIRGLOW_TEST_VALIDATION=off` does without the layers there, where they are not installed.
 
+use airglow_conformance::HostDevice;
+use airglow_gpu::ash;
 use airglow_gpu::open::{MessageLog, OpenDevice, OpenOptions, Selector};
 use airglow_gpu::{Context, Requirements};
 use std::convert::Infallible;
@@ -56,6 +58,25 @@ pub fn open(requirements: &Requirements) -> OpenDevice {
         println!("{DEVICE}: {line}, validation {}", if validation { "on" } else { "off" });
     }
     device
+}
+
+/// A device on the instance of `open`, its own or another, as a host states it.
+pub fn stated(open: &OpenDevice, device: &ash::Device) -> HostDevice<'static> {
+    let mut extensions = Vec::new();
+    let info = open.adopt_info(&mut extensions, 1);
+    HostDevice {
+        get_instance_proc_addr: info.get_instance_proc_addr,
+        get_device_proc_addr: open.instance().fp_v1_0().get_device_proc_addr,
+        instance: info.instance,
+        api_version: info.api_version,
+        physical_device: info.physical_device,
+        device: device.handle(),
+        queue_family: info.queue_family,
+        // SAFETY: a live device with a queue of that family.
+        queue: unsafe { device.get_device_queue(info.queue_family, 0) },
+        features: info.features,
+        extensions: &["VK_EXT_debug_utils"],
+    }
 }
 
 impl Fixture {

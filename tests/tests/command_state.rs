@@ -8,14 +8,14 @@ use airglow_gpu::{AdoptInfo, Context, Requirements};
 use airglow_graph::{Access, State};
 use airglow_tests::compare::assert_close;
 use airglow_tests::device::open;
-use airglow_tests::shim::{ACTIONS, Call, STATE, Shim};
+use airglow_tests::shim::{ACTIONS, Call, STATE, Shim, watch};
 use airglow_tests::workload::{Workload, reference};
 use std::collections::BTreeSet;
 
 /// Records the workload once, through the watch, and returns the commands and the picture.
 fn record(entry: State, exit: State) -> (Vec<Call>, Vec<f32>) {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     let mut extensions = Vec::new();
     let info = AdoptInfo {
         get_device_proc_addr: Some(shim.get_device_proc_addr()),
@@ -107,7 +107,7 @@ fn imports_come_from_their_entry_and_leave_in_their_exit_state() {
 /// As [`record`], but the picture is brought into its entry state by the host first.
 fn record_after_reading(entry: State, exit: State) -> (Vec<Call>, ()) {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     let mut extensions = Vec::new();
     let info = AdoptInfo {
         get_device_proc_addr: Some(shim.get_device_proc_addr()),

@@ -10,7 +10,7 @@ use airglow_gpu::{
 use airglow_graph::{Access, BufferDesc, Graph, PassKind, State};
 use airglow_tests::compare::assert_close;
 use airglow_tests::device::open;
-use airglow_tests::shim::Shim;
+use airglow_tests::shim::{Shim, watch};
 use airglow_tests::workload::{Workload, reference};
 
 /// Adopts through the watch.
@@ -46,7 +46,7 @@ fn all(device: &OpenDevice, shim: &Shim) -> Result<(Readback, Context), GpuError
 #[test]
 fn running_out_of_memory_anywhere_unwinds_clean() {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     shim.fail(u64::MAX, vk::Result::SUCCESS);
     let (copy, context) = all(&device, &shim).unwrap();
     assert_close("the picture", &copy.texels().unwrap().concat(), &reference(), 1e-6, 1e-6);
@@ -76,7 +76,7 @@ fn running_out_of_memory_anywhere_unwinds_clean() {
 #[test]
 fn a_lost_device_is_told_and_everything_can_be_dropped() {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     let options = Options { breadcrumbs: true, ..Options::default() };
     // SAFETY: nothing is submitted after the last wait; dropped before the device.
     let context = unsafe { adopt(&device, &shim, options) }.unwrap();
@@ -95,7 +95,7 @@ fn a_lost_device_is_told_and_everything_can_be_dropped() {
 #[test]
 fn breadcrumbs_name_the_pass_the_device_reached() {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     let options = Options { breadcrumbs: true, ..Options::default() };
     // SAFETY: `frame` waits; everything is dropped before the device.
     let context = unsafe { adopt(&device, &shim, options) }.unwrap();
@@ -136,7 +136,7 @@ fn breadcrumbs_name_the_pass_the_device_reached() {
 #[test]
 fn a_budget_is_met_or_refused_with_what_would_fit() {
     let device = open(&Requirements::engine());
-    let shim = Shim::new(&device);
+    let shim = watch(&device);
     let options = Options { memory_budget: Some(10_000), ..Options::default() };
     // SAFETY: nothing is submitted; dropped before the device.
     let context = unsafe { adopt(&device, &shim, options) }.unwrap();

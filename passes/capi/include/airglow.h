@@ -868,6 +868,47 @@ typedef struct AirglowAdoptInfo {
   struct AirglowText *missing;
 } AirglowAdoptInfo;
 
+#if defined(AIRGLOW_CONFORMANCE)
+/**
+ * What came of a check; `failure` is null where it passed, and else says what is wrong. Both texts are UTF-8 and live
+ * during the call.
+ */
+typedef void (*AirglowConformanceReport)(void *user, const char *check, const char *failure);
+#endif
+
+#if defined(AIRGLOW_CONFORMANCE)
+/**
+ * A host's device for the conformance kit.
+ */
+typedef struct AirglowConformanceInfo {
+  /**
+   * `sizeof(AirglowConformanceInfo)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * The device, as the host hands it to `airglow_context_adopt`. Of it the kit leaves alone: requirements, frames in
+   * flight, allocator, pipeline cache, budget, breadcrumbs and `missing`.
+   */
+  const struct AirglowAdoptInfo *device;
+  /**
+   * A `VkQueue` of `queue_family`, which does graphics and compute: the kit submits to it and waits for it.
+   */
+  uint64_t queue;
+  /**
+   * Called for each check; or null.
+   */
+  AirglowConformanceReport report;
+  /**
+   * Handed to `report`.
+   */
+  void *user;
+} AirglowConformanceInfo;
+#endif
+
 /**
  * How far a device came.
  */
@@ -1246,6 +1287,31 @@ AirglowStatus airglow_bake(const struct AirglowBakeInfo *info,
                            size_t transfer_count,
                            struct AirglowBakeStats *stats,
                            struct AirglowError *error);
+
+#if defined(AIRGLOW_CONFORMANCE)
+/**
+ * Adds what the conformance kit asks of a device.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_conformance_require(struct AirglowRequirements *requirements, struct AirglowError *error);
+#endif
+
+#if defined(AIRGLOW_CONFORMANCE)
+/**
+ * Runs the conformance kit on the host's device: passes made by the functions of this header and by Rust, between
+ * commands of the kit's own, by accesses and record and by the library's graph; the bits, the layouts and the state of
+ * the command buffer are compared, and nothing may stay alive. `*failures` gets the number of checks that failed. What
+ * validation layers say goes to the host's messenger. A check that failed may leave objects of the device behind.
+ *
+ * The caller promises:
+ * As `airglow_context_adopt`; no one else uses the queue meanwhile.
+ */
+AirglowStatus airglow_conformance_run(const struct AirglowConformanceInfo *info,
+                                      uint32_t *failures,
+                                      struct AirglowError *error);
+#endif
 
 /**
  * Adopts the host's device. Nothing is submitted, waited for or started, now or later.

@@ -114,12 +114,7 @@ unsafe fn adopt(info: &AirglowAdoptInfo) -> Result<Context, Failure> {
     }
     // SAFETY: the caller vouches for pointers, functions and handles.
     unsafe {
-        let (mut extensions, mut features) = created(info.device_create_info.cast())?;
-        for &name in array(info.extension_names, info.extension_count, "extension_names")? {
-            extensions.push(string(name, "an extension name", "")?);
-        }
-        let named = features_named(info.feature_names, info.feature_count)?;
-        features = features.iter().chain(named.iter()).collect();
+        let (extensions, features) = enabled(info)?;
         let none = airglow_gpu::Requirements::engine();
         let requirements = match info.requirements.is_null() {
             true => &none,
@@ -154,6 +149,22 @@ unsafe fn adopt(info: &AirglowAdoptInfo) -> Result<Context, Failure> {
             let _ = write_text(info.missing, &json!(texts).to_string());
         }
         Ok(adopted?)
+    }
+}
+
+/// Extensions and features that the host enabled, by either way of saying so.
+///
+/// # Safety
+/// As [`airglow_context_adopt`]; what `info` points at outlives the result.
+pub(crate) unsafe fn enabled<'a>(info: &AirglowAdoptInfo) -> Result<(Vec<&'a str>, FeatureSet), Failure> {
+    // SAFETY: the caller's promise is ours.
+    unsafe {
+        let (mut extensions, features) = created(info.device_create_info.cast())?;
+        for &name in array(info.extension_names, info.extension_count, "extension_names")? {
+            extensions.push(string(name, "an extension name", "")?);
+        }
+        let named = features_named(info.feature_names, info.feature_count)?;
+        Ok((extensions, features.iter().chain(named.iter()).collect()))
     }
 }
 

@@ -7,6 +7,8 @@
 
 pub mod allocator;
 pub mod bake;
+#[cfg(any(test, feature = "conformance"))]
+pub mod conformance;
 pub mod context;
 mod input;
 pub mod needs;

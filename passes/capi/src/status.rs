@@ -120,7 +120,7 @@ pub(crate) unsafe fn edge(
 }
 
 /// What a panic said; the panic is let go of without running what may panic again.
-fn words(panic: Box<dyn Any + Send>) -> String {
+pub(crate) fn words(panic: Box<dyn Any + Send>) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
     std::mem::forget(panic);

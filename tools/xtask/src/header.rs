@@ -46,6 +46,8 @@ fn text(source: &Path) -> Result<String, Error> {
         },
         ..Config::default()
     };
+    // Only a library with the kit has it.
+    config.defines.insert("feature = conformance".to_owned(), "AIRGLOW_CONFORMANCE".to_owned());
     // Fields that hold them are integers, so that no value of a host is undefined; nothing else refers to them.
     config.export.include = enumerations(source)?;
     let problem =

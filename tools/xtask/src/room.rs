@@ -65,7 +65,8 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
         return Err(refuse("there is no such crate below passes/"));
     }
     let mut edited = room_lines::edit(workspace, |file, text| Some(room_lines::remove(file, text, name)))?;
-    for folder in ["passes", "passes/capi/src", "shaders/glsl", "shaders/spirv"] {
+    let of_capi = ["passes/capi/src", "passes/capi/tests", "passes/capi/examples"];
+    for folder in ["passes", "shaders/glsl", "shaders/spirv"].into_iter().chain(of_capi) {
         let folder = workspace.join(folder).join(name);
         if folder.exists() {
             fs::remove_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;

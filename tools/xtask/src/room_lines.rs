@@ -24,9 +24,11 @@ pub enum Place {
     Capi,
     /// passes/capi/src/lib.rs: the module of each such room.
     CapiLibrary,
+    /// passes/capi/src/conformance.rs: the checks of each such room.
+    CapiConformance,
 }
 
-const PLACES: [(Place, &str); 7] = [
+const PLACES: [(Place, &str); 8] = [
     (Place::Workspace, "Cargo.toml"),
     (Place::Umbrella, "passes/Cargo.toml"),
     (Place::UmbrellaLibrary, "passes/src/lib.rs"),
@@ -34,6 +36,7 @@ const PLACES: [(Place, &str); 7] = [
     (Place::Tool, "tools/airglow/Cargo.toml"),
     (Place::Capi, "passes/capi/Cargo.toml"),
     (Place::CapiLibrary, "passes/capi/src/lib.rs"),
+    (Place::CapiConformance, "passes/capi/src/conformance.rs"),
 ];
 
 /// The texts of all places after `change`; nothing is written.
@@ -87,7 +90,7 @@ pub fn add(place: Place, text: &str, name: &str) -> Option<String> {
         }
         Place::Shaders => Some(format!("{text}\n[[entry]]\nfile = \"{name}/expose.comp\"\n")),
         // Whoever uses the room there adds its lines.
-        Place::Tool | Place::Capi | Place::CapiLibrary => Some(text.to_owned()),
+        Place::Tool | Place::Capi | Place::CapiLibrary | Place::CapiConformance => Some(text.to_owned()),
     }
 }
 
@@ -95,8 +98,11 @@ pub fn add(place: Place, text: &str, name: &str) -> Option<String> {
 pub fn remove(place: Place, text: &str, name: &str) -> String {
     match place {
         Place::Workspace => {
-            let (member, dependency) = (format!("\"passes/{name}\","), format!("airglow-{name} "));
-            drop_lines(text, |line| line.trim_start() == member || line.starts_with(&dependency))
+            // A room may have crates within it.
+            let members = [format!("    \"passes/{name}\""), format!("    \"passes/{name}/")];
+            let gone = |line: &str| members.iter().any(|member| line.starts_with(member));
+            let dependency = format!("airglow-{name} ");
+            drop_lines(text, |line| gone(line) || line.starts_with(&dependency))
         }
         Place::Umbrella | Place::Tool | Place::Capi => {
             let (dependency, feature) = (format!("airglow-{name} "), format!("{name} = ["));
@@ -111,6 +117,10 @@ pub fn remove(place: Place, text: &str, name: &str) -> String {
             let switch = format!("#[cfg(feature = \"{name}\")]");
             let (export, module) = (format!("pub use airglow_{name} "), format!("pub mod {name};"));
             drop_lines(text, |line| line == switch || line.starts_with(&export) || line == module)
+        }
+        Place::CapiConformance => {
+            let (switch, module) = (format!("#[cfg(feature = \"{name}\")]"), format!("crate::{name}::"));
+            drop_lines(text, |line| line.trim() == switch || line.contains(&module))
         }
         Place::Shaders => {
             // Entries are paragraphs.
@@ -166,7 +176,8 @@ mod tests {
         for (place, file) in PLACES {
             let text = fs::read_to_string(crate::workspace().join(file)).unwrap();
             let added = add(place, &text, "anotherroom").unwrap();
-            let by_hand = [Place::Tool, Place::Capi, Place::CapiLibrary].contains(&place);
+            let by_hand =
+                [Place::Tool, Place::Capi, Place::CapiLibrary, Place::CapiConformance].contains(&place);
             assert_eq!(added != text, !by_hand, "{file}");
             assert_eq!(remove(place, &added, "anotherroom"), text, "{file}");
         }
@@ -180,7 +191,7 @@ mod tests {
         let text =
             "# All.\n\n# Fog.\n[[entry]]\nfile = \"fog/a.comp\"\n\n[[entry]]\nfile = \"foggy/a.comp\"\n";
         assert_eq!(remove(Place::Shaders, text, "fog"), "# All.\n\n[[entry]]\nfile = \"foggy/a.comp\"\n");
-        let text = "airglow-fog = 1\nairglow-foggy = 2\n    \"passes/fog\",\n    \"passes/foggy\",\n";
+        let text = "airglow-fog = 1\nairglow-foggy = 2\n    \"passes/fog\",\n    \"passes/fog/c\",\n    \"passes/foggy\",\n";
         assert_eq!(remove(Place::Workspace, text, "fog"), "airglow-foggy = 2\n    \"passes/foggy\",\n");
     }
 }

@@ -1,6 +1,8 @@
 //! Relighting by precomputed radiance transfer, for hosts in C and C++: meshes and an environment in; per frame the
 //! uses of resources as data, then commands in the host's own command buffer.
 
+#[cfg(any(test, feature = "conformance"))]
+pub(crate) mod conformance;
 pub mod frame;
 pub mod lists;
 pub mod plan;

@@ -6,8 +6,9 @@ use std::ptr::{null, null_mut};
 
 use airglow_gpu::ash::vk::{self, Handle};
 
-use super::{adopt_info, call, error, function, message, refused, requirements, settings, with_host};
+use super::{adopt_info, call, refused, requirements, settings, with_host};
 use crate::bake::{AirglowBakeInfo, airglow_bake};
+use crate::conformance::{error, function, message};
 use crate::context::*;
 use crate::input::{array, versioned};
 use crate::needs::AirglowNeed;
@@ -173,7 +174,7 @@ fn a_device_that_lacks_something_and_texts_that_do_not_fit() {
     with_host(|host| lacking(host, requirements(&settings(0))));
 }
 
-fn lacking(host: &HostDevice, asked: *mut AirglowRequirements) {
+fn lacking(host: &HostDevice<'_>, asked: *mut AirglowRequirements) {
     let mut data = [1u8; 4096];
     let mut text = AirglowText { data: data.as_mut_ptr().cast(), capacity: data.len(), length: 0 };
     let info = AirglowAdoptInfo { requirements: asked, missing: &raw mut text, ..adopt_info(host) };

@@ -1,32 +1,26 @@
-//! The host: its device, its memory, its submission.
+//! The host: its memory and its submission, on a device that is given.
 
 use super::roads::{by_graph, by_record, fill, read_back};
 use super::{Content, Given, HostResource, Outputs, Road, Room, layout_after};
-use crate::device::open;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
-use airglow_gpu::open::OpenDevice;
 use airglow_gpu::{
-    AdoptInfo, Context, FeatureSet, FeatureStorage, GpuError, Label, Options, Readback, Recorder,
-    Requirements, patch_features,
+    AdoptInfo, Context, FeatureSet, GpuError, Label, Options, Readback, Recorder, Requirements,
 };
-use std::ffi::c_void;
 
-/// A host with a device of its own on the test device's instance, whose validation hears all devices.
-pub struct Host {
-    open: OpenDevice,
+/// A host on a device.
+pub(super) struct Host<'a> {
+    stated: HostDevice<'a>,
     device: ash::Device,
     pool: vk::CommandPool,
-    features: FeatureSet,
-    requirements: Requirements,
 }
 
-/// A host's device as it states it, for rooms that adopt it on a road of their own.
+/// A host's device as it states it.
 #[derive(Clone, Copy)]
-pub struct HostDevice {
+pub struct HostDevice<'a> {
     /// The loader's function.
     pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
-    /// The device's function, with the kit listening behind it.
+    /// The device's function; a room gets one with the kit listening behind it.
     pub get_device_proc_addr: vk::PFN_vkGetDeviceProcAddr,
     /// The instance.
     pub instance: vk::Instance,
@@ -38,10 +32,12 @@ pub struct HostDevice {
     pub device: vk::Device,
     /// Family of the queue that commands are submitted to.
     pub queue_family: u32,
+    /// The queue: it does graphics, compute and transfer.
+    pub queue: vk::Queue,
     /// Features enabled.
     pub features: FeatureSet,
     /// Extensions enabled.
-    pub extensions: &'static [&'static str],
+    pub extensions: &'a [&'a str],
 }
 
 /// A resource that the host made, with its memory.
@@ -66,59 +62,35 @@ impl Made {
     }
 }
 
-impl Host {
-    /// Makes the device: the host chains what it wants itself, and has the room's features patched in.
-    pub fn new(requirements: &Requirements) -> Self {
-        let open = open(requirements);
-        let requirements = Requirements::engine().and(requirements);
-        let instance = open.instance();
-        let mut own =
-            vk::PhysicalDeviceVulkan12Features { timeline_semaphore: vk::TRUE, ..Default::default() };
-        let mut chain: *mut c_void = (&raw mut own).cast();
-        let mut core = vk::PhysicalDeviceFeatures::default();
-        let mut storage = FeatureStorage::default();
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(open.queue_family())
-            .queue_priorities(&[1.0])];
-        // SAFETY: live handles; the chain is valid and outlived by its storage; what is enabled is supported.
-        let (device, pool, features) = unsafe {
-            let supported = FeatureSet::supported(instance, open.physical_device());
-            let wanted = requirements.features_to_enable(supported);
-            patch_features(&mut chain, Some(&mut core), wanted, vk::API_VERSION_1_3, &mut storage)
-                .expect("a plain chain");
-            let features = FeatureSet::of_chain(chain, Some(&core));
-            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&core);
-            let info = vk::DeviceCreateInfo { p_next: chain, ..info };
-            let device =
-                instance.create_device(open.physical_device(), &info, None).expect("a second device");
-            let info = vk::CommandPoolCreateInfo::default().queue_family_index(open.queue_family());
+impl<'a> Host<'a> {
+    /// Loads the device's functions and makes a command pool.
+    ///
+    /// # Safety
+    /// `stated` is true, and its device outlives this.
+    pub(super) unsafe fn new(stated: &HostDevice<'a>) -> Self {
+        // SAFETY: the caller vouches for the functions and the handles; names end in a nul.
+        unsafe {
+            let get = |name: &std::ffi::CStr| (stated.get_device_proc_addr)(stated.device, name.as_ptr());
+            let load =
+                |name: &std::ffi::CStr| std::mem::transmute::<vk::PFN_vkVoidFunction, *const _>(get(name));
+            let device = ash::Device::load_with(load, stated.device);
+            let info = vk::CommandPoolCreateInfo::default().queue_family_index(stated.queue_family);
             let pool = device.create_command_pool(&info, None).expect("a command pool");
-            (device, pool, features)
-        };
-        assert_eq!(own.timeline_semaphore, vk::TRUE, "what the host wanted stays");
-        Self { open, device, pool, features, requirements }
+            Self { stated: *stated, device, pool }
+        }
     }
 
     /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
     pub(super) fn run<R: Room>(
         &self,
-        make: impl Fn(&Context, &HostDevice) -> R,
+        make: impl Fn(&Context, &HostDevice<'_>) -> R,
+        requirements: &Requirements,
         options: &Options,
         road: Road,
     ) -> (Outputs, Vec<Call>) {
-        let handle = self.device.handle();
-        let shim = Shim::watching(&self.open, handle);
-        let host = HostDevice {
-            get_instance_proc_addr: self.open.entry().static_fn().get_instance_proc_addr,
-            get_device_proc_addr: shim.get_device_proc_addr(),
-            instance: self.open.instance().handle(),
-            api_version: vk::API_VERSION_1_3,
-            physical_device: self.open.physical_device(),
-            device: handle,
-            queue_family: self.open.queue_family(),
-            features: self.features,
-            extensions: &["VK_EXT_debug_utils"],
-        };
+        // SAFETY: `Self::new` was given live handles with their own functions.
+        let shim = unsafe { Shim::watching(&self.stated) };
+        let host = HostDevice { get_device_proc_addr: shim.get_device_proc_addr(), ..self.stated };
         let info = AdoptInfo {
             get_instance_proc_addr: host.get_instance_proc_addr,
             get_device_proc_addr: Some(host.get_device_proc_addr),
@@ -129,7 +101,7 @@ impl Host {
             queue_family: host.queue_family,
             features: host.features,
             extensions: host.extensions,
-            requirements: &self.requirements,
+            requirements,
             allocator: None,
             pipeline_cache: vk::PipelineCache::null(),
             frames_in_flight: 1,
@@ -183,10 +155,9 @@ impl Host {
             let copies =
                 record(&mut Recorder::new(context, commands[0])).unwrap_or_else(|error| panic!("{error}"));
             self.device.end_command_buffer(commands[0]).expect("a complete command buffer");
-            let queue = self.device.get_device_queue(self.open.queue_family(), 0);
             let submit = vk::SubmitInfo::default().command_buffers(&commands);
-            self.device.queue_submit(queue, &[submit], vk::Fence::null()).expect("submission");
-            self.device.device_wait_idle().expect("the frame's end");
+            self.device.queue_submit(self.stated.queue, &[submit], vk::Fence::null()).expect("submission");
+            self.device.queue_wait_idle(self.stated.queue).expect("the frame's end");
             copies
         }
     }
@@ -239,17 +210,11 @@ impl Host {
             self.device.free_memory(memory, None);
         }
     }
+}
 
-    /// Destroys the device and asserts that validation said nothing.
-    pub(super) fn finish(self) {
-        let messages = self.open.messages();
-        // SAFETY: the device is idle, and everything made on it is gone.
-        unsafe {
-            self.device.destroy_command_pool(self.pool, None);
-            self.device.destroy_device(None);
-        }
-        drop(self.open);
-        let said: Vec<_> = messages.take().iter().map(ToString::to_string).collect();
-        assert!(said.is_empty(), "validation said:\n{}", said.join("\n"));
+impl Drop for Host<'_> {
+    fn drop(&mut self) {
+        // SAFETY: what was submitted was waited for, or never came to it.
+        unsafe { self.device.destroy_command_pool(self.pool, None) };
     }
 }

@@ -1,0 +1,232 @@
+//! The conformance kit for hosts in C and C++: the library's passes inside the host's own device, checked there.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "checks fail by panics, which the edge of each turns into text"
+)]
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::mem::zeroed;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use airglow_conformance::HostDevice;
+use airglow_gpu::Requirements;
+use airglow_gpu::ash::{vk, vk::Handle};
+
+use crate::context::{AirglowAdoptInfo, AirglowContext, airglow_context_adopt, enabled};
+use crate::input::{Versioned, exclusive, store, versioned};
+use crate::physical::{AirglowFunction, get_instance_proc_addr};
+use crate::requirements::AirglowRequirements;
+use crate::status::{AirglowError, AirglowStatus, Failure, edge, words};
+
+/// A check with its name; it panics with what is wrong.
+type Check = (&'static CStr, fn(&HostDevice<'_>));
+
+/// The checks of a pass.
+pub(crate) struct Checks {
+    /// What they need of a device.
+    pub requirements: fn() -> Requirements,
+    /// Each check.
+    pub checks: &'static [Check],
+}
+
+/// Those of every pass.
+const ROOMS: &[Checks] = &[
+    #[cfg(feature = "relight")]
+    crate::relight::conformance::CHECKS,
+];
+
+/// What came of a check; `failure` is null where it passed, and else says what is wrong. Both texts are UTF-8 and live
+/// during the call.
+pub type AirglowConformanceReport =
+    Option<unsafe extern "C" fn(user: *mut c_void, check: *const c_char, failure: *const c_char)>;
+
+/// A host's device for the conformance kit.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct AirglowConformanceInfo {
+    /// `sizeof(AirglowConformanceInfo)`.
+    pub struct_size: u32,
+    /// Not used; 0.
+    pub reserved: u32,
+    /// The device, as the host hands it to `airglow_context_adopt`. Of it the kit leaves alone: requirements, frames in
+    /// flight, allocator, pipeline cache, budget, breadcrumbs and `missing`.
+    pub device: *const AirglowAdoptInfo,
+    /// A `VkQueue` of `queue_family`, which does graphics and compute: the kit submits to it and waits for it.
+    pub queue: u64,
+    /// Called for each check; or null.
+    pub report: AirglowConformanceReport,
+    /// Handed to `report`.
+    pub user: *mut c_void,
+}
+
+// SAFETY: `#[repr(C)]`, its size first, integers, pointers and an optional function; fields of 8 bytes are at multiples
+// of 8.
+unsafe impl Versioned for AirglowConformanceInfo {
+    const OLDEST: usize = size_of::<Self>();
+}
+
+/// Adds what the conformance kit asks of a device.
+///
+/// # Safety
+/// Nothing beyond the pointers being valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_conformance_require(
+    requirements: *mut AirglowRequirements,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let requirements = exclusive(requirements, "requirements")?;
+            ROOMS.iter().for_each(|room| requirements.add(&(room.requirements)()));
+            Ok(())
+        })
+    }
+}
+
+/// Runs the conformance kit on the host's device: passes made by the functions of this header and by Rust, between
+/// commands of the kit's own, by accesses and record and by the library's graph; the bits, the layouts and the state of
+/// the command buffer are compared, and nothing may stay alive. `*failures` gets the number of checks that failed. What
+/// validation layers say goes to the host's messenger. A check that failed may leave objects of the device behind.
+///
+/// # Safety
+/// As `airglow_context_adopt`; no one else uses the queue meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_conformance_run(
+    info: *const AirglowConformanceInfo,
+    failures: *mut u32,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for pointers, handles and the queue.
+    unsafe {
+        edge(error, || {
+            store(failures, "failures", || {
+                let info = versioned(info, "info")?;
+                let device = versioned(info.device, "info.device")?;
+                let (extensions, features) = enabled(&device)?;
+                let host = HostDevice { features, extensions: &extensions, ..stated(&device, info.queue)? };
+                Ok(run(&host, &info))
+            })
+        })
+    }
+}
+
+/// The number of checks that failed.
+fn run(host: &HostDevice<'_>, info: &AirglowConformanceInfo) -> u32 {
+    let mut failures = 0;
+    for (name, check) in ROOMS.iter().flat_map(|room| room.checks) {
+        let failure = catch_unwind(AssertUnwindSafe(|| check(host))).err();
+        failures += u32::from(failure.is_some());
+        let text = failure.map(|panic| CString::new(words(panic).replace('\0', " ")).unwrap_or_default());
+        let failure = text.as_ref().map_or(std::ptr::null(), |text| text.as_ptr());
+        if let Some(report) = info.report {
+            // SAFETY: the host's function with the host's pointer; both texts outlive the call.
+            unsafe { report(info.user, name.as_ptr(), failure) };
+        }
+    }
+    failures
+}
+
+/// A device as its host states it, without what is enabled on it.
+///
+/// # Safety
+/// As [`airglow_context_adopt`].
+unsafe fn stated(info: &AirglowAdoptInfo, queue: u64) -> Result<HostDevice<'static>, Failure> {
+    for (name, handle) in [("instance", info.instance), ("device", info.device), ("queue", queue)] {
+        if handle == 0 {
+            return Err(Failure::argument(name, "it is null"));
+        }
+    }
+    let instance = vk::Instance::from_raw(info.instance);
+    // SAFETY: the caller vouches for the functions.
+    unsafe {
+        let get_instance = get_instance_proc_addr(info.get_instance_proc_addr)?;
+        let given = info.get_device_proc_addr;
+        let get_device = given.or_else(|| get_instance(instance, c"vkGetDeviceProcAddr".as_ptr()));
+        let problem = "it is null, and the instance has none";
+        let get_device = get_device.ok_or_else(|| Failure::argument("get_device_proc_addr", problem))?;
+        Ok(HostDevice {
+            get_instance_proc_addr: get_instance,
+            get_device_proc_addr: std::mem::transmute::<
+                unsafe extern "system" fn(),
+                vk::PFN_vkGetDeviceProcAddr,
+            >(get_device),
+            instance,
+            api_version: info.api_version,
+            physical_device: vk::PhysicalDevice::from_raw(info.physical_device),
+            device: vk::Device::from_raw(info.device),
+            queue_family: info.queue_family,
+            queue: vk::Queue::from_raw(queue),
+            features: Default::default(),
+            extensions: &[],
+        })
+    }
+}
+
+/// An error to be filled.
+pub(crate) fn error() -> AirglowError {
+    // SAFETY: zero bytes are a valid error, of status 0.
+    AirglowError { struct_size: size_of::<AirglowError>() as u32, ..unsafe { zeroed() } }
+}
+
+/// What an error says.
+pub(crate) fn message(error: &AirglowError) -> &str {
+    // SAFETY: messages end in a nul.
+    unsafe { CStr::from_ptr(error.message.as_ptr()) }.to_str().unwrap_or("a message that is not UTF-8")
+}
+
+/// Calls a function with an error at its end, and fails the check with the message.
+macro_rules! call {
+    ($function:path, $($argument:expr),*) => {{
+        let mut error = $crate::conformance::error();
+        // SAFETY: the kit and the tests keep the function's promises.
+        let status = unsafe { $function($($argument,)* &raw mut error) };
+        let said = $crate::conformance::message(&error);
+        assert_eq!(status, $crate::status::AirglowStatus::Ok, "{}: {said}", stringify!($function));
+    }};
+}
+pub(crate) use call;
+
+/// A function of Vulkan as the header has it.
+pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {
+    // SAFETY: function pointers of one size, and cast back before they are called.
+    unsafe { std::mem::transmute_copy(&function) }
+}
+
+/// What a host states of its device; extensions and features are added by [`adopt`].
+pub(crate) fn adopt_info(host: &HostDevice<'_>) -> AirglowAdoptInfo {
+    AirglowAdoptInfo {
+        struct_size: size_of::<AirglowAdoptInfo>() as u32,
+        api_version: host.api_version,
+        get_instance_proc_addr: function(host.get_instance_proc_addr),
+        get_device_proc_addr: function(host.get_device_proc_addr),
+        instance: host.instance.as_raw(),
+        physical_device: host.physical_device.as_raw(),
+        device: host.device.as_raw(),
+        queue_family: host.queue_family,
+        frames_in_flight: 1,
+        // SAFETY: zero bytes are a valid description.
+        ..unsafe { zeroed() }
+    }
+}
+
+/// Adopts a host's device for what `requirements` ask.
+pub(crate) fn adopt(host: &HostDevice<'_>, requirements: *const AirglowRequirements) -> *mut AirglowContext {
+    let names = |texts: &[&str]| texts.iter().map(|text| CString::new(*text).unwrap()).collect::<Vec<_>>();
+    let extensions = names(host.extensions);
+    let features = names(&host.features.iter().map(|feature| feature.name()).collect::<Vec<_>>());
+    let extension_names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+    let feature_names: Vec<_> = features.iter().map(|name| name.as_ptr()).collect();
+    let info = AirglowAdoptInfo {
+        requirements,
+        extension_names: extension_names.as_ptr(),
+        extension_count: extension_names.len(),
+        feature_names: feature_names.as_ptr(),
+        feature_count: feature_names.len(),
+        ..adopt_info(host)
+    };
+    let mut context = std::ptr::null_mut();
+    call!(airglow_context_adopt, &raw const info, &raw mut context);
+    context
+}

@@ -1,0 +1,248 @@
+//! The pass inside a host: by the graph from Rust, by accesses and record from C. The kit holds both to the same bits,
+//! layouts and state.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "checks fail by panics")]
+
+use std::mem::zeroed;
+use std::ptr;
+
+use airglow_conformance::{
+    Content, Given, HostDevice, HostResource, Named, Outputs, Refusal, Room, conform_on,
+};
+use airglow_gpu::ash::vk::{BufferUsageFlags as Usage, Format, Handle, ImageUsageFlags};
+use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc};
+use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight};
+use glam::DQuat;
+
+use crate::conformance::{Checks, adopt, call};
+use crate::context::{AirglowContext, airglow_context_drop};
+use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
+use crate::relight::lists::{AirglowAccess, airglow_prepared_accesses};
+use crate::relight::prepared::{
+    AirglowPrepared, airglow_prepared_drop, airglow_prepared_make_scratch, airglow_relight_prepare,
+};
+use crate::relight::record::{AirglowBinding, airglow_prepared_record};
+use crate::relight::resources::AirglowResource;
+use crate::relight::settings::AirglowRelightSettings;
+use crate::relight::{
+    AirglowRelight, airglow_relight_add_mesh, airglow_relight_drop, airglow_relight_new,
+    airglow_relight_require, airglow_relight_set_environment,
+};
+use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+
+const WIDTH: u32 = 32;
+const HEIGHT: u32 = 16;
+const VERTICES: u32 = 1500;
+/// About +Y by 0.7.
+const ROTATION: [f64; 4] = [0.0, 0.342_897_807_455_451_34, 0.0, 0.939_372_712_847_378_9];
+
+/// Numbers in [0, 1): the fractional parts of multiples of the golden ratio.
+fn numbers(count: usize, first: f64) -> Vec<f32> {
+    (0..count).map(|i| (first + i as f64 * 0.618_033_988_749_894_9).fract() as f32).collect()
+}
+
+fn sky() -> Vec<[f32; 3]> {
+    numbers((3 * WIDTH * HEIGHT) as usize, 0.3).chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
+}
+
+/// The pass twice: made by Rust, and made by the exported functions.
+pub(crate) struct Both {
+    relight: Relight,
+    mesh: MeshId,
+    context: *mut AirglowContext,
+    through_c: *mut AirglowRelight,
+    instance: AirglowRelightInstance,
+    prepared: *mut AirglowPrepared,
+    /// Whether the library gets the sky as texels, in place of the host's image.
+    texels: bool,
+}
+
+impl Both {
+    pub(crate) fn new(context: &Context, host: &HostDevice<'_>, method: u32, texels: bool) -> Self {
+        let settings = settings(method);
+        let vectors = numbers(16 * VERTICES as usize, 0.7);
+        let mut relight = Relight::new(context, settings.read().unwrap()).unwrap();
+        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors)).unwrap();
+        let asked = requirements(&settings);
+        let (context, mut through_c) = (adopt(host, asked), ptr::null_mut());
+        // SAFETY: they were read by the call above alone.
+        unsafe { airglow_requirements_drop(asked) };
+        call!(airglow_relight_new, context, &raw const settings, &raw mut through_c);
+        // SAFETY: zero bytes are a valid instance.
+        let mut instance: AirglowRelightInstance = unsafe { zeroed() };
+        let (name, values, mesh_number) = (c"mesh".as_ptr(), vectors.as_ptr(), &raw mut instance.mesh);
+        call!(airglow_relight_add_mesh, through_c, name, VERTICES, values, vectors.len(), mesh_number);
+        if texels {
+            call!(airglow_relight_set_environment, through_c, WIDTH, HEIGHT, sky().as_ptr().cast());
+        }
+        Self { relight, mesh, context, through_c, instance, prepared: ptr::null_mut(), texels }
+    }
+}
+
+impl Drop for Both {
+    fn drop(&mut self) {
+        // The context first: what was made from it may outlive it.
+        // SAFETY: they came from the functions above and are not used again.
+        unsafe {
+            airglow_context_drop(self.context);
+            airglow_relight_drop(self.through_c);
+            airglow_prepared_drop(self.prepared);
+        }
+    }
+}
+
+impl Room for Both {
+    fn requirements(&self) -> Requirements {
+        Relight::requirements(self.relight.settings())
+    }
+
+    fn resources(&self) -> Vec<HostResource> {
+        let usage = ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST;
+        let image = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
+        let texels = sky().into_iter().flat_map(|[r, g, b]| [r, g, b, 1.0]);
+        let texels = texels.flat_map(f32::to_le_bytes).collect();
+        let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
+        let results = BufferDesc { size: 16 * u64::from(VERTICES), usage };
+        vec![
+            HostResource {
+                name: "sky",
+                content: Content::Image(image, texels),
+                entry: Access::FragmentSampled.into(),
+                exit: Access::FragmentSampled.into(),
+            },
+            HostResource {
+                name: "vertex colours",
+                content: Content::Buffer(results, vec![0xff; 16 * VERTICES as usize]),
+                entry: Access::ComputeStorageReadWrite.into(),
+                exit: Access::VertexBuffer.into(),
+            },
+        ]
+    }
+
+    fn add(
+        &mut self,
+        context: &Context,
+        graph: &mut Graph<Record>,
+        imports: &mut Imports,
+        host: &[Named],
+    ) -> Result<(), Refusal> {
+        let [Named::Image(image), Named::Buffer(results)] = *host else {
+            return Err("other resources".into());
+        };
+        let rotation = DQuat::from_array(ROTATION);
+        let environment = Environment { image, width: WIDTH, height: HEIGHT, revision: 1, rotation };
+        let light = Light::Environment(environment);
+        let frame = Frame { light, instances: vec![Instance::new(self.mesh)], target: Some(results) };
+        self.relight.add(context, graph, imports, &frame)?;
+        Ok(())
+    }
+
+    fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
+        let light = if self.texels { AirglowLight::Environment } else { AirglowLight::EnvironmentImage };
+        let frame = AirglowRelightFrame {
+            struct_size: size_of::<AirglowRelightFrame>() as u32,
+            light: light as u32,
+            light_rotation: ROTATION,
+            instances: &raw const self.instance,
+            instance_count: 1,
+            environment_width: WIDTH,
+            environment_height: HEIGHT,
+            environment_revision: 1,
+        };
+        call!(airglow_relight_prepare, self.through_c, &raw const frame, &raw mut self.prepared);
+        call!(airglow_prepared_make_scratch, self.prepared);
+        let mut count = 0;
+        call!(airglow_prepared_accesses, self.prepared, ptr::null_mut(), &raw mut count);
+        // SAFETY: zero bytes are a valid access.
+        let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
+        call!(airglow_prepared_accesses, self.prepared, uses.as_mut_ptr(), &raw mut count);
+        let ends = |resource: AirglowResource| {
+            let mut all = uses.iter().filter(|used| used.resource == resource as u32).map(known);
+            let first = all.next()?;
+            Some((first, all.next_back().unwrap_or(first)))
+        };
+        let sky = ends(AirglowResource::Environment).filter(|_| !self.texels);
+        Ok(vec![sky, ends(AirglowResource::Results)])
+    }
+
+    fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
+        let [Given::Image(image), Given::Buffer(results)] = host else {
+            return Err("other resources".into());
+        };
+        // SAFETY: zero bytes are a valid binding.
+        let none = unsafe { zeroed::<AirglowBinding>() };
+        let mut bindings = vec![AirglowBinding {
+            resource: AirglowResource::Results as u32,
+            buffer: results.raw().as_raw(),
+            size: results.size(),
+            usage: results.desc().usage.as_raw(),
+            ..none
+        }];
+        if !self.texels {
+            bindings.push(AirglowBinding {
+                resource: AirglowResource::Environment as u32,
+                image: image.raw().as_raw(),
+                format: image.desc().format.as_raw() as u32,
+                usage: image.desc().usage.as_raw(),
+                extent: [WIDTH, HEIGHT],
+                ..none
+            });
+        }
+        let commands = recorder.command_buffer().as_raw();
+        call!(airglow_prepared_record, self.prepared, commands, bindings.as_ptr(), bindings.len());
+        Ok(())
+    }
+}
+
+/// The access of the table that has those numbers.
+fn known(used: &AirglowAccess) -> Access {
+    let numbers = (used.stage, used.access, used.writes != 0);
+    let same = |access: &&Access| {
+        (access.stage().as_raw(), access.access().as_raw(), access.writes()) == numbers
+            && (used.layout == 0 || access.layout().as_raw() as u32 == used.layout)
+    };
+    *Access::ALL.iter().find(same).unwrap()
+}
+
+/// Settings that are all default but for the method.
+pub(crate) fn settings(method: u32) -> AirglowRelightSettings {
+    let struct_size = size_of::<AirglowRelightSettings>() as u32;
+    // SAFETY: zero bytes are valid settings.
+    AirglowRelightSettings { struct_size, method, ..unsafe { zeroed() } }
+}
+
+/// What the pass asks for.
+pub(crate) fn requirements(settings: &AirglowRelightSettings) -> *mut AirglowRequirements {
+    let mut requirements = ptr::null_mut();
+    call!(airglow_requirements_new, &raw mut requirements);
+    call!(airglow_relight_require, requirements, settings);
+    requirements
+}
+
+/// What the kit holds the pass to.
+pub(crate) const CHECKS: Checks = Checks {
+    requirements: || asked(0).and(&asked(1)),
+    checks: &[
+        (c"relight: compute, an environment in the host's image", |host| assert_lit(host, 0, false)),
+        (c"relight: compute, an environment as texels", |host| assert_lit(host, 0, true)),
+        (c"relight: fragment, an environment in the host's image", |host| assert_lit(host, 1, false)),
+    ],
+};
+
+fn asked(method: u32) -> Requirements {
+    Relight::requirements(&settings(method).read().unwrap())
+}
+
+fn assert_lit(host: &HostDevice<'_>, method: u32, texels: bool) {
+    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, method, texels);
+    // SAFETY: whoever runs the kit vouches for the device and its queue.
+    let outputs = unsafe { conform_on(host, &asked(method), &Options::default(), make) };
+    assert_written(&outputs);
+}
+
+/// Every vertex was written, and none is black.
+pub(crate) fn assert_written(outputs: &Outputs) {
+    let colours = outputs[0].chunks_exact(16);
+    let lit = colours.filter(|colour| colour[12..] == 1f32.to_le_bytes() && colour[..4] != [0; 4]).count();
+    assert_eq!(lit, VERTICES as usize, "vertices that are lit");
+}
