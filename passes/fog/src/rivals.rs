@@ -3,6 +3,8 @@
 //! Uniform and equi-angular marching (Kulla and Fajardo 2012), the thesis's table of F(u, v) (Sun 2008, eq. 3.16), the
 //! closed form by poles, and the pass's taps with other numbers of them. README.md says which ships, and why.
 
+mod froxels;
+
 use std::fmt;
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, Filter as Sampling, Format, ImageUsageFlags};
@@ -17,6 +19,8 @@ use crate::FogError;
 use crate::bench::Bench;
 use crate::kernels::words;
 use crate::reference::table::{Filter, Table};
+
+pub use froxels::Froxels;
 
 /// A way to the airlight of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +95,8 @@ pub struct Round {
     pub mask: u32,
     /// Steps of a march.
     pub steps: u32,
+    /// Lights of each row, the next a little farther off the ray than the last: times without the rows' reads.
+    pub repeats: u32,
 }
 
 /// What evaluators run on.

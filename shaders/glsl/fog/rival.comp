@@ -53,6 +53,7 @@ layout(push_constant) uniform Settings {
     uint stride; // from a light's row of a pixel to the next light's
     uint mask;   // of the row's number
     int steps;
+    int repeats; // lights of each row, the next a little farther off the ray than the last
 } settings;
 
 void main()
@@ -67,7 +68,10 @@ void main()
 #else
         Configuration c = Configuration(row.extinction_extent.r, row.seen_along.r, row.seen_along.w, row.off_weight.x, row.extinction_extent.w);
 #endif
-        sum += row.off_weight.yzw * rival_airlight(c, settings.steps);
+        for (int repeat = 0; repeat < settings.repeats; ++repeat) {
+            sum += row.off_weight.yzw * rival_airlight(c, settings.steps);
+            c.off *= 1.001;
+        }
     }
     airlight.values[pixel] = vec4(sum, 1.0);
 }
