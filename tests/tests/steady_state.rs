@@ -52,14 +52,14 @@ fn a_frame_allocates_nothing_after_warm_up() {
     let mut timing = timing.with_pipeline_statistics().unwrap();
     let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
     let (warm_up, measured) = (10, 50);
-    let mut allocations = [0, 0];
+    let mut counted = [0, 0];
     let mut fastest = Duration::MAX;
     for frame in 0..warm_up + measured {
         let recorded = frames.frame(FrameSemaphores::default(), |command_buffer: vk::CommandBuffer| {
             let before = allocations();
             // SAFETY: the loop's command buffer is recording; the plan imports nothing.
             let recorded = unsafe { execution.record(context, command_buffer, &imports, Some(&mut timing)) };
-            allocations[usize::from(frame >= warm_up)] += allocations() - before;
+            counted[usize::from(frame >= warm_up)] += allocations() - before;
             recorded
         });
         fastest = fastest.min(recorded.unwrap().cpu);
@@ -67,7 +67,7 @@ fn a_frame_allocates_nothing_after_warm_up() {
     frames.finish().unwrap();
     println!("{PASSES} passes recorded in {fastest:?} at best, under validation");
     assert!(timing.summary().is_some());
-    let [warming_up, after] = allocations;
+    let [warming_up, after] = counted;
     assert!(warming_up > 0, "the counter is dead: the first frames make pools and buffers");
     assert_eq!(after, 0, "heap allocations in {measured} frames of {PASSES} passes");
 }
