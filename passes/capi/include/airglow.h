@@ -445,6 +445,10 @@ enum AirglowResource
    * The results of all instances.
    */
   AIRGLOW_RESOURCE_RESULTS = 15,
+  /**
+   * Counters of bad texels.
+   */
+  AIRGLOW_RESOURCE_HEALTH = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -1,6 +1,6 @@
 //! Lamps that come and go between frames cost nothing: no compile, no pipeline, no allocation, no new plan.
 
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "helpers fail the test they are called from")]
 
 use airglow_fog::{ACCESSES, Camera, Fog, Fogged, Frame, Light, Medium, Settings, View};
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};

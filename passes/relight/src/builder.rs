@@ -45,7 +45,7 @@ impl Builder {
         once: Option<Once>,
     ) {
         let uses = uses.into_iter().map(|(resource, access)| Use { resource, access }).collect();
-        self.stages.push(Stage { name, kind, uses, work, once });
+        self.stages.push(Stage { name, kind, uses, before: Vec::new(), work, once });
     }
 
     pub(crate) fn leave_out(&mut self, what: &str, why: &str, bytes: u64, would_return: &str) {
@@ -67,6 +67,10 @@ impl Builder {
                 resources.into_iter().map(|resource| (resource, Access::TransferDestination)).collect();
             self.stage("relight uploads", PassKind::Transfer, uses, Work::Uploads(uploads), None);
             self.stages.rotate_right(1);
+        }
+        let mut last = BTreeMap::new();
+        for stage in &mut self.stages {
+            stage.before = stage.uses.iter().map(|used| last.insert(used.resource, used.access)).collect();
         }
         let needs = self.needs.into_iter().collect();
         Prepared { stages: self.stages, needs, left_out: self.left_out, ranges, rotations, shown }

@@ -31,6 +31,8 @@ pub struct Envelope {
     pub visibility: bool,
     /// Whether lighting from normals may be needed.
     pub normals: bool,
+    /// Whether counting of bad texels may be needed.
+    pub health: bool,
 }
 
 impl From<Settings> for Envelope {
@@ -44,12 +46,14 @@ impl From<Settings> for Envelope {
             lights: vec![settings.light],
             visibility: settings.visibility,
             normals: settings.normals,
+            health: settings.health,
         }
     }
 }
 
 impl Envelope {
-    /// Every settings of the envelope that has kernels, each with all of visibility and normals that it can have.
+    /// Every settings of the envelope that has kernels, each with all of visibility, normals and counting that it can
+    /// have.
     ///
     /// # Errors
     /// [`RelightError::Order`] for an order without kernels, [`RelightError::Settings`] when no combination has any.
@@ -60,8 +64,9 @@ impl Envelope {
             for (&storage, &output) in product(&self.storages, &self.outputs) {
                 for (&method, &light) in product(&self.methods, &self.lights) {
                     let normals = self.normals && output == Output::Colour;
-                    let visibility = self.visibility;
-                    let settings = Settings { order, storage, output, method, light, visibility, normals };
+                    let Self { visibility, health, .. } = *self;
+                    let settings =
+                        Settings { order, storage, output, method, light, visibility, normals, health };
                     all.extend(settings.check().is_ok().then_some(settings));
                 }
             }
@@ -88,7 +93,7 @@ impl Envelope {
     /// # Errors
     /// [`RelightError::Envelope`].
     pub fn check(&self, settings: &Settings) -> Result<(), RelightError> {
-        let Settings { order, storage, output, method, light, visibility, normals } = *settings;
+        let Settings { order, storage, output, method, light, visibility, normals, health } = *settings;
         let fields = [
             (self.orders.contains(&order), "orders", format!("order {order}")),
             (self.storages.contains(&storage), "storages", format!("storage {storage:?}")),
@@ -97,6 +102,7 @@ impl Envelope {
             (self.lights.contains(&light), "lights", format!("light {light:?}")),
             (self.visibility || !visibility, "visibility", "dynamic visibility".to_owned()),
             (self.normals || !normals, "normals", "lighting from normals".to_owned()),
+            (self.health || !health, "health", "counting of bad texels".to_owned()),
         ];
         match fields.into_iter().find(|(inside, ..)| !inside) {
             Some((_, field, setting)) => Err(RelightError::Envelope { setting, field }),
@@ -138,6 +144,11 @@ fn vertex_kernel(settings: &Settings, source: Source) -> (Permutation, Kernel) {
     (Permutation::new(&kernel, method), kernel)
 }
 
+/// Every kernel that the settings can need.
+pub(crate) fn kernels_of(settings: &Settings) -> impl Iterator<Item = Kernel> {
+    permutations(&[*settings]).into_values()
+}
+
 /// Every kernel that some of `all` need, once.
 fn permutations(all: &[Settings]) -> BTreeMap<Permutation, Kernel> {
     let of = |settings: &Settings| {
@@ -148,6 +159,7 @@ fn permutations(all: &[Settings]) -> BTreeMap<Permutation, Kernel> {
         if settings.light == LightKind::Uniform {
             let light = [kernels::environment_rows, kernels::environment_bands, kernels::rotate];
             found.extend(light.map(|kernel| compute(kernel(order))));
+            found.extend(settings.health.then(|| compute(kernels::counted_environment_rows(order))));
             found.extend(settings.shadows().then(|| compute(kernels::product_matrix(order))));
         }
         found
@@ -234,8 +246,12 @@ impl Pipelines {
         if settings.light != LightKind::Uniform {
             return None;
         }
+        let rows = match settings.health {
+            true => kernels::counted_environment_rows,
+            false => kernels::environment_rows,
+        };
         Some(LightPipelines {
-            rows: compute(kernels::environment_rows)?,
+            rows: compute(rows)?,
             bands: compute(kernels::environment_bands)?,
             rotate: compute(kernels::rotate)?,
             matrix: compute(kernels::product_matrix),

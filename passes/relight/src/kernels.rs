@@ -9,8 +9,9 @@ use airglow_gpu::{BindingDesc, BindingKind};
 use airglow_graph::Access;
 
 use modules::{
-    ByOrder, COLOUR, ENVIRONMENT_BANDS, ENVIRONMENT_ROWS, INCIDENT_BAKED, INCIDENT_BOTH, INCIDENT_DYNAMIC,
-    INCIDENT_OPEN, PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX, ROTATE,
+    ByOrder, COLOUR, ENVIRONMENT_BANDS, ENVIRONMENT_ROWS, ENVIRONMENT_ROWS_HEALTH, INCIDENT_BAKED,
+    INCIDENT_BOTH, INCIDENT_DYNAMIC, INCIDENT_OPEN, PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX,
+    ROTATE,
 };
 
 use crate::settings::{LightKind, Output, Settings, Storage};
@@ -96,6 +97,16 @@ pub(crate) fn environment_rows(order: usize) -> Kernel {
         spirv: ENVIRONMENT_ROWS[order - 1],
         bindings: const { &[sampled(0), read(1), write(2)] },
         push_constant_size: 8,
+    }
+}
+
+/// The same, counting bad texels: environment, column table, row sums, counters.
+#[must_use]
+pub(crate) fn counted_environment_rows(order: usize) -> Kernel {
+    Kernel {
+        spirv: ENVIRONMENT_ROWS_HEALTH[order - 1],
+        bindings: const { &[sampled(0), read(1), write(2), storage(3, Access::ComputeStorageReadWrite)] },
+        ..environment_rows(order)
     }
 }
 
@@ -261,8 +272,9 @@ fn vertex_bindings(settings: &Settings, source: Source) -> &'static [Binding] {
 pub fn all() -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for order in 1..=crate::settings::MAX_ORDER {
-        kernels
-            .extend([environment_rows, environment_bands, rotate, product, product_matrix].map(|k| k(order)));
+        let rows = [environment_rows, counted_environment_rows];
+        kernels.extend(rows.map(|kernel| kernel(order)));
+        kernels.extend([environment_bands, rotate, product, product_matrix].map(|kernel| kernel(order)));
         for storage in [Storage::F32, Storage::F16] {
             for light in [LightKind::Uniform, LightKind::Vertex] {
                 let settings = Settings { order, storage, light, ..Settings::default() };

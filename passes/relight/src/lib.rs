@@ -68,7 +68,7 @@ pub use error::RelightError;
 pub use frame::{Environment, Frame, Instance, Light, Relit, ResultRange};
 pub use mesh::MeshId;
 pub use record::Bindings;
-pub use relight::Relight;
+pub use relight::{HEALTH, Relight};
 pub use rotation::{Orientation, instance_rotation, object_space};
 pub use settings::{LightKind, MAX_ORDER, Method, Output, Settings, Storage};
 pub use stage::{Need, Prepared, Resource, Stage, Use};

@@ -212,12 +212,19 @@ impl Relight {
         builder.scratch(Resource::RowSums, row_bytes);
         builder.scratch(Resource::MapCoefficients, 16 * u64::from(coefficients));
         let size = Pair::new(width, height);
-        let uses = vec![
+        let mut uses = vec![
             (Resource::Environment, Access::ComputeSampled),
             (Resource::ColumnTable, read),
             (Resource::RowSums, write),
         ];
-        let work = Work::Rows { pipeline: pipelines.rows.clone(), size };
+        if let Some(health) = &self.health {
+            let (buffer, access) = (health.buffer().clone(), Access::ComputeStorageReadWrite);
+            let need = Need::Ours { buffer, entry: access.into(), exit: access.into() };
+            builder.needs.insert(Resource::Health, need);
+            uses.push((Resource::Health, access));
+        }
+        let counted = self.health.is_some();
+        let work = Work::Rows { pipeline: pipelines.rows.clone(), size, counted };
         builder.stage("relight environment rows", PassKind::Compute, uses, work, once(false));
         let uses =
             vec![(Resource::RowTable, read), (Resource::RowSums, read), (Resource::MapCoefficients, write)];

@@ -8,7 +8,7 @@ use airglow_graph::Access;
 use crate::control::Shown;
 use crate::kernels::WORKGROUP;
 use crate::pack::RECTANGLE_WIDTH;
-use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Work};
+use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Use, Work};
 
 /// The resources of a frame: the host's, and the scratch a host without a graph makes.
 #[derive(Clone, Default)]
@@ -23,9 +23,27 @@ impl Bindings {
     pub(crate) fn buffer(&self, resource: Resource) -> Result<&BufferSlice, GpuError> {
         self.buffers.get(&resource).ok_or_else(|| missing(resource))
     }
+}
+
+/// Where a stage finds its resources; nothing is copied to look one up.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    given: &'a Bindings,
+    /// Those of a frame recorded without a graph, sorted; where they are this room's own they come first.
+    needs: &'a [(Resource, Need)],
+}
+
+impl Found<'_> {
+    fn buffer(&self, resource: Resource) -> Result<BufferSlice, GpuError> {
+        let need = self.needs.binary_search_by_key(&resource, |(name, _)| *name);
+        if let Ok(Some((_, Need::Ours { buffer, .. }))) = need.map(|place| self.needs.get(place)) {
+            return Ok(buffer.into());
+        }
+        self.given.buffer(resource).cloned()
+    }
 
     fn image(&self, resource: Resource) -> Result<&ImageView, GpuError> {
-        self.images.get(&resource).ok_or_else(|| missing(resource))
+        self.given.images.get(&resource).ok_or_else(|| missing(resource))
     }
 
     /// `size` bytes from `offset` of a resource.
@@ -58,24 +76,19 @@ impl Prepared {
     /// Records all stages with barriers between them and none around them: before, the host makes its inputs
     /// visible to the first access of [`accesses`](Self::accesses) and brings images into its layout; afterwards it
     /// waits for the last. The packed rectangle is the exception: its layouts are changed here, from undefined.
+    /// Recorded again, it allocates nothing on the heap.
     ///
     /// Command-buffer state changed: as [`Recorder`] says.
     ///
     /// # Errors
     /// [`GpuError::Misuse`] for a resource that is not bound or too small.
     pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
-        let mut bindings = bindings.clone();
-        for (resource, need) in &self.needs {
-            if let Need::Ours { buffer, .. } = need {
-                bindings.buffers.insert(*resource, buffer.into());
-            }
-        }
-        let mut last: BTreeMap<Resource, Access> = BTreeMap::new();
+        let found = Found { given: bindings, needs: &self.needs };
         for stage in &self.stages {
-            for used in &stage.uses {
-                synchronise(recorder, &bindings, *used, last.insert(used.resource, used.access))?;
+            for (used, before) in stage.uses.iter().zip(&stage.before) {
+                synchronise(recorder, found, *used, *before)?;
             }
-            recorder.labelled(stage.name, |recorder| stage.record(recorder, &bindings))?;
+            recorder.labelled(stage.name, |recorder| stage.record_once(recorder, found))?;
         }
         Ok(())
     }
@@ -84,12 +97,12 @@ impl Prepared {
 /// The barrier between two uses of a resource within the frame.
 fn synchronise(
     recorder: &mut Recorder<'_>,
-    bindings: &Bindings,
-    used: crate::stage::Use,
+    found: Found<'_>,
+    used: Use,
     before: Option<Access>,
 ) -> Result<(), GpuError> {
     if used.resource == Resource::Rectangle {
-        let image = bindings.image(Resource::Rectangle)?.image();
+        let image = found.image(Resource::Rectangle)?.image();
         return match before {
             Some(before) => recorder.transition(image, before, used.access),
             None => recorder.transition(image, airglow_graph::State::UNDEFINED, used.access),
@@ -109,35 +122,44 @@ impl Stage {
     /// # Errors
     /// As [`Prepared::record`].
     pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
-        let Some(once) = &self.once else { return self.record_work(recorder, bindings) };
+        self.record_once(recorder, Found { given: bindings, needs: &[] })
+    }
+
+    fn record_once(&self, recorder: &mut Recorder<'_>, found: Found<'_>) -> Result<(), GpuError> {
+        let Some(once) = &self.once else { return self.record_work(recorder, found) };
         if once.projected.holds(once.revision) {
             return Ok(());
         }
-        self.record_work(recorder, bindings)?;
+        self.record_work(recorder, found)?;
         if once.last {
             once.projected.set(once.revision);
         }
         Ok(())
     }
 
-    fn record_work(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+    fn record_work(&self, recorder: &mut Recorder<'_>, found: Found<'_>) -> Result<(), GpuError> {
         match &self.work {
             Work::Uploads(uploads) => uploads.iter().try_for_each(|upload| upload.record(recorder)),
-            Work::Rows { pipeline, size } => {
-                let bound = [
-                    Binding::sampled(0, bindings.image(Resource::Environment)?.clone()),
-                    Binding::storage(1, bindings.buffer(Resource::ColumnTable)?),
-                    Binding::storage(2, bindings.buffer(Resource::RowSums)?),
+            Work::Rows { pipeline, size, counted } => {
+                let [environment, columns, sums] = [
+                    Binding::sampled(0, found.image(Resource::Environment)?.clone()),
+                    Binding::storage(1, found.buffer(Resource::ColumnTable)?),
+                    Binding::storage(2, found.buffer(Resource::RowSums)?),
                 ];
-                recorder.bind_compute(pipeline, &bound)?;
+                if *counted {
+                    let counters = Binding::storage(3, found.buffer(Resource::Health)?);
+                    recorder.bind_compute(pipeline, &[environment, columns, sums, counters])?;
+                } else {
+                    recorder.bind_compute(pipeline, &[environment, columns, sums])?;
+                }
                 recorder.push_constants(size)?;
                 recorder.dispatch([size.second, 1, 1])
             }
             Work::Bands { pipeline, size, coefficients } => {
                 let bound = [
-                    Binding::storage(0, bindings.buffer(Resource::RowTable)?),
-                    Binding::storage(1, bindings.buffer(Resource::RowSums)?),
-                    Binding::storage(2, bindings.buffer(Resource::MapCoefficients)?),
+                    Binding::storage(0, found.buffer(Resource::RowTable)?),
+                    Binding::storage(1, found.buffer(Resource::RowSums)?),
+                    Binding::storage(2, found.buffer(Resource::MapCoefficients)?),
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
                 recorder.push_constants(size)?;
@@ -147,9 +169,9 @@ impl Stage {
                 let (turns, count) =
                     rotations.with(|turns| Ok::<_, GpuError>((recorder.upload(turns)?, turns.len())))?;
                 let bound = [
-                    Binding::storage(0, bindings.buffer(*source)?),
+                    Binding::storage(0, found.buffer(*source)?),
                     Binding::storage(1, &turns),
-                    Binding::storage(2, bindings.buffer(*target)?),
+                    Binding::storage(2, found.buffer(*target)?),
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
                 recorder.push_constants(strides)?;
@@ -157,23 +179,23 @@ impl Stage {
             }
             Work::Matrices { pipeline, elements, instances, strides } => {
                 let bound = [
-                    Binding::storage(0, bindings.buffer(Resource::Tensor)?),
-                    Binding::storage(1, bindings.buffer(Resource::Lights)?),
-                    Binding::storage(2, bindings.buffer(Resource::Matrices)?),
+                    Binding::storage(0, found.buffer(Resource::Tensor)?),
+                    Binding::storage(1, found.buffer(Resource::Lights)?),
+                    Binding::storage(2, found.buffer(Resource::Matrices)?),
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
                 recorder.push_constants(strides)?;
                 recorder.dispatch([elements.div_ceil(WORKGROUP), *instances, 1])
             }
             Work::Vertices(chunks, shown) => shown_chunks(chunks, shown).try_for_each(|chunk| {
-                with_bindings(&chunk.bound, bindings, |bound| recorder.bind_compute(&chunk.pipeline, bound))?;
+                with_bindings(&chunk.bound, found, |bound| recorder.bind_compute(&chunk.pipeline, bound))?;
                 recorder.push_constants(&chunk.constants)?;
                 recorder.dispatch([chunk.groups, 1, 1])
             }),
-            Work::Rectangle(chunks, shown) => draw_rectangle(recorder, chunks, shown, bindings),
+            Work::Rectangle(chunks, shown) => draw_rectangle(recorder, chunks, shown, found),
             Work::Copy { size } => {
-                let results = bindings.slice(Resource::Results, 0, *size)?;
-                recorder.copy_image_to_buffer(bindings.image(Resource::Rectangle)?, results)
+                let results = found.slice(Resource::Results, 0, *size)?;
+                recorder.copy_image_to_buffer(found.image(Resource::Rectangle)?, results)
             }
         }
     }
@@ -190,11 +212,11 @@ fn shown_chunks<'a, P>(
 /// Hands what a chunk binds to `bind`, on the stack: no kernel over vertices binds more than five.
 fn with_bindings(
     bound: &[Bound],
-    bindings: &Bindings,
+    found: Found<'_>,
     bind: impl FnOnce(&[Binding]) -> Result<(), GpuError>,
 ) -> Result<(), GpuError> {
     let one = |bound: &Bound| {
-        let slice = bindings.slice(bound.resource, bound.offset, bound.size)?;
+        let slice = found.slice(bound.resource, bound.offset, bound.size)?;
         Ok::<_, GpuError>(match bound.uniform {
             true => Binding::uniform(bound.binding, slice),
             false => Binding::storage(bound.binding, slice),
@@ -214,13 +236,13 @@ fn draw_rectangle(
     recorder: &mut Recorder<'_>,
     chunks: &[ChunkWork<airglow_gpu::GraphicsPipeline>],
     shown: &Shown,
-    bindings: &Bindings,
+    found: Found<'_>,
 ) -> Result<(), GpuError> {
-    let view = bindings.image(Resource::Rectangle)?;
+    let view = found.image(Resource::Rectangle)?;
     let colors = [ColorAttachment { view, load: Load::Discard }];
     recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
     for chunk in shown_chunks(chunks, shown) {
-        with_bindings(&chunk.bound, bindings, |bound| recorder.bind_graphics(&chunk.pipeline, bound))?;
+        with_bindings(&chunk.bound, found, |bound| recorder.bind_graphics(&chunk.pipeline, bound))?;
         recorder.push_constants(&chunk.constants)?;
         let rows = chunk.constants.vertex_count.div_ceil(RECTANGLE_WIDTH);
         recorder.set_scissor([0, chunk.constants.first_row], [RECTANGLE_WIDTH, rows])?;

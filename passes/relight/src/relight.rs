@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::requirements::{FormatNeed, Limit, LimitNeed};
-use airglow_gpu::{Buffer, Context, Label, Location, Requirements};
+use airglow_gpu::{Buffer, Context, Health, Label, Location, Requirements};
 use airglow_graph::BufferDesc;
 use airglow_math::World;
 
 use crate::RelightError;
 use crate::control::Projected;
-use crate::envelope::{LightPipelines, Pipelines, VertexPipeline};
+use crate::envelope::{LightPipelines, Pipelines, VertexPipeline, kernels_of};
 use crate::kernels::Source;
 use crate::mesh::{Mesh, MeshId, Meshes};
 use crate::pack::{ChunkLimits, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
@@ -20,6 +20,10 @@ use crate::tables::{MapTables, tensor};
 
 /// Format of the packed rectangle: what the vertex buffer holds.
 pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// What is counted with [`Settings::health`]: texels of the environment with a component that is not finite, which counts
+/// as 0, and others with one below 0, which is taken as it is.
+pub const HEALTH: [&str; 2] = ["relight texels not finite", "relight texels negative"];
 
 /// Tables for environments of one size, and what was projected with them.
 pub(crate) struct Map {
@@ -44,6 +48,8 @@ pub struct Relight {
     pub(crate) pipeline_count: usize,
     /// With uniform light only.
     pub(crate) light_pipelines: Option<LightPipelines>,
+    /// With uniform light and [`Settings::health`] only.
+    pub(crate) health: Option<Health>,
     /// With uniform light only: the environment's coefficients.
     pub(crate) environment_light: Option<Buffer>,
     pub(crate) map: Option<Map>,
@@ -68,7 +74,10 @@ impl Relight {
             }
         };
         requirements.formats.push(FormatNeed { format: RECTANGLE_FORMAT, usage, why: "vertex colours" });
-        requirements
+        if settings.check().is_err() {
+            return requirements;
+        }
+        kernels_of(settings).fold(requirements, |all, kernel| all.with_descriptors(&kernel.binding_descs()))
     }
 
     /// Makes the kernels and tables that `settings` need on a device.
@@ -131,8 +140,13 @@ impl Relight {
             true => Some(Resident::new(context, "relight tensor", &tensor(settings.order)?)?),
             false => None,
         };
+        let health = match settings.health && uniform {
+            true => Some(Health::new(context, &HEALTH)?),
+            false => None,
+        };
         Ok(Self {
             settings,
+            health,
             world: World::default(),
             chunk_vertices,
             meshes: Meshes::default(),
@@ -215,6 +229,13 @@ impl Relight {
     /// [`RelightError::UnknownMesh`].
     pub fn drop_mesh(&mut self, mesh: MeshId) -> Result<(), RelightError> {
         self.meshes.remove(mesh)
+    }
+
+    /// The counters of [`HEALTH`], which the host clears before a frame's commands and collects after them, and reads when
+    /// that frame is done: `None` without [`Settings::health`], and for light of each vertex. A frame that does not
+    /// project the environment counts nothing.
+    pub fn health(&mut self) -> Option<&mut Health> {
+        self.health.as_mut()
     }
 
     /// Forgets that the environment was projected: for a host that threw away a recorded frame.

@@ -67,6 +67,9 @@ pub struct Settings {
     /// Whether instances of meshes without vectors may bring the normals of their vertices, for colours. Default no:
     /// then their kernels do not exist.
     pub normals: bool,
+    /// Whether the texels of environments that are not finite, and those that are negative, are counted. Default no: then
+    /// neither the counters nor the kernel that adds to them exist. The colours are the same bits.
+    pub health: bool,
 }
 
 impl Default for Settings {
@@ -79,6 +82,7 @@ impl Default for Settings {
             light: LightKind::default(),
             visibility: false,
             normals: false,
+            health: false,
         }
     }
 }

@@ -24,6 +24,8 @@ pub enum Resource {
     MapCoefficients,
     /// The environment's coefficients; kept from frame to frame.
     EnvironmentLight,
+    /// Counters of bad texels, see [`Relight::health`](crate::Relight::health).
+    Health,
     /// SH RGB light of the host.
     UniformLight,
     /// The light in the frame of each instance.
@@ -55,6 +57,7 @@ impl fmt::Display for Resource {
             Self::RowSums => f.write_str("relight row sums"),
             Self::MapCoefficients => f.write_str("relight map coefficients"),
             Self::EnvironmentLight => f.write_str("relight environment light"),
+            Self::Health => f.write_str("relight health"),
             Self::UniformLight => f.write_str("relight uniform light"),
             Self::Lights => f.write_str("relight lights"),
             Self::Tensor => f.write_str("relight tensor"),
@@ -105,6 +108,8 @@ pub struct Stage {
     pub kind: PassKind,
     /// What it uses, each resource once.
     pub uses: Vec<Use>,
+    /// For each use, how the resource was used before it within the frame; `None` for the first.
+    pub(crate) before: Vec<Option<Access>>,
     pub(crate) work: Work,
     pub(crate) once: Option<Once>,
 }
@@ -172,6 +177,7 @@ pub(crate) enum Work {
     Rows {
         pipeline: ComputePipeline,
         size: Pair,
+        counted: bool,
     },
     Bands {
         pipeline: ComputePipeline,

@@ -20,6 +20,7 @@ fn envelope() -> Envelope {
         lights: vec![LightKind::Uniform, LightKind::Vertex],
         visibility: true,
         normals: true,
+        health: true,
     }
 }
 

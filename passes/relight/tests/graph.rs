@@ -314,3 +314,47 @@ fn a_bad_texel_stays_local() {
         assert_ne!(found, colours(&good), "the texel is seen");
     }
 }
+
+#[test]
+fn bad_texels_are_counted_where_that_is_asked_for_and_colours_keep_their_bits() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let device = fixture.device();
+    let mut broken = texels(3);
+    let mut mended = broken.clone();
+    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().cycle().take(7).enumerate() {
+        let texel = 31 * i + 5;
+        (broken[texel][i % 3], mended[texel][i % 3]) = (bad, 0.0);
+    }
+    // Two components of one texel are one texel, and what is negative is counted by itself and taken as it is.
+    (broken[5][2], mended[5][2]) = (f32::NAN, 0.0);
+    for texel in [40, 41] {
+        (broken[texel][1], mended[texel][1]) = (-0.5, -0.5);
+    }
+    let run = |health: bool, texels: &[[f32; 3]]| {
+        let made = context.pipelines_made();
+        let mut relight = Relight::new(context, Settings { health, ..Settings::default() }).unwrap();
+        let made = context.pipelines_made() - made;
+        let (mesh, _) = mesh(context, &mut relight, 200, 2);
+        let sky = sky(&fixture, texels);
+        if let Some(health) = relight.health() {
+            device.run(context, |recorder| health.clear(recorder)).unwrap();
+        }
+        let built = build(context, &mut relight, &sky, 1, vec![Instance::new(mesh)]);
+        let colours = run_once(&fixture, built);
+        let counts = relight.health().map(|health| {
+            device.run(context, |recorder| health.collect(recorder)).unwrap();
+            for _ in 0..context.frames_in_flight() {
+                device.run(context, |_| Ok(())).unwrap();
+            }
+            health.latest(context).unwrap().unwrap().counts.into_iter().map(|(_, count)| count).collect()
+        });
+        (colours, counts, made)
+    };
+    let (colours, counts, made) = run(true, &broken);
+    assert_eq!(counts, Some(vec![7, 2]));
+    let (expected, none, made_without) = run(false, &mended);
+    assert_eq!((colours, none), (expected.clone(), None::<Vec<u32>>));
+    assert_eq!(made, made_without + 1, "counting takes a kernel of its own");
+    assert_eq!(run(true, &mended), (expected, Some(vec![0, 2]), made));
+}

@@ -4,43 +4,20 @@
 
 mod host;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::sync::{Arc, Mutex};
 
-use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::ash::vk::{BufferUsageFlags, ImageUsageFlags};
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
-use airglow_gpu::{Context, Counts, Execution, Imports, Label, Location, Readback, Timing};
-use airglow_graph::{Access, BufferDesc, Graph, PassKind};
+use airglow_gpu::{Buffer, Context, Counts, Execution, Imports, Label, Location, Readback, Recorder, Timing};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, PassKind, ResourceDesc};
 use airglow_relight::{
-    Frame, GraphFrame, Instance, Light, Method, Relight, Relit, ResultRange, Settings, Shown,
+    Bindings, Frame, GraphFrame, Instance, Light, Method, Need, Prepared, Relight, Relit, Resource,
+    ResultRange, Settings, Shown,
 };
 use airglow_tests::device::Fixture;
+use airglow_tests::heap::{Counting, allocations};
 use glam::DQuat;
 use host::{Numbers, fixture};
-
-thread_local! {
-    /// Allocations of this thread.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-/// The system's allocator, counting.
-struct Counting;
-
-// SAFETY: every call is the system allocator's; counting touches a thread-local that allocates nothing.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that is ending has no count any more.
-        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: the caller's promise is passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -63,22 +40,33 @@ struct Built {
     readback: Arc<Mutex<Option<Readback>>>,
 }
 
-fn build(context: &Context, relight: &mut Relight) -> Built {
-    let mut numbers = Numbers::new(101);
+/// A light of the host's.
+fn light(context: &Context, numbers: &mut Numbers) -> Buffer {
     let light: Vec<[f32; 4]> = numbers.rgb(16).into_iter().map(|[r, g, b]| [r, g, b, 0.0]).collect();
     let desc = BufferDesc { size: 256, usage: BufferUsageFlags::STORAGE_BUFFER };
     let buffer = context.create_buffer(Label::new("host", "light"), &desc, Location::Upload).unwrap();
     buffer.write(0, &light).unwrap();
-    let (mut graph, mut imports) = (Graph::new(), Imports::new());
-    let state = Access::ComputeStorageRead;
-    let coefficients = graph.import_buffer("light", *buffer.desc(), state, state);
-    imports.buffer(&coefficients, &buffer);
+    buffer
+}
+
+/// Three instances of three meshes.
+fn instances<B>(context: &Context, relight: &mut Relight, numbers: &mut Numbers) -> Vec<Instance<B>> {
     let instance = |(i, &vertices): (usize, &u32)| {
         let vectors = numbers.values(16 * vertices as usize);
         let mesh = relight.add_mesh(context, &format!("mesh {i}"), vertices, Some(&vectors)).unwrap();
         Instance { orientation: DQuat::from_rotation_y(i as f64).into(), ..Instance::new(mesh) }
     };
-    let instances: Vec<_> = VERTICES.iter().enumerate().map(instance).collect();
+    VERTICES.iter().enumerate().map(instance).collect()
+}
+
+fn build(context: &Context, relight: &mut Relight) -> Built {
+    let mut numbers = Numbers::new(101);
+    let buffer = light(context, &mut numbers);
+    let (mut graph, mut imports) = (Graph::new(), Imports::new());
+    let state = Access::ComputeStorageRead;
+    let coefficients = graph.import_buffer("light", *buffer.desc(), state, state);
+    imports.buffer(&coefficients, &buffer);
+    let instances = instances(context, relight, &mut numbers);
     let light = Light::Uniform { coefficients, rotation: DQuat::IDENTITY };
     let frame: GraphFrame = Frame { light, instances, target: None };
     let Relit { results, ranges, shown, .. } =
@@ -106,16 +94,16 @@ fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -
     let passes = built.execution.plan().steps().len() as u32;
     let mut timing = Timing::new(context, passes, 0, KEPT).unwrap();
     let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
-    let mut allocations = 0;
+    let mut counted = 0;
     for frame in 0..WARM_UP + 30 {
         let recorded = frames.frame(FrameSemaphores::default(), |commands| {
-            let before = COUNT.get();
+            let before = allocations();
             built.shown.set(1, shown(frame)).unwrap();
             // SAFETY: the loop's command buffer is recording and submitted once; imports are in their entry states.
             let recorded =
                 unsafe { built.execution.record(context, commands, &built.imports, Some(&mut timing)) };
             if frame >= WARM_UP {
-                allocations += COUNT.get() - before;
+                counted += allocations() - before;
             }
             recorded
         });
@@ -124,7 +112,7 @@ fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -
     frames.finish().unwrap();
     timing.collect().unwrap();
     let times: Vec<f64> = timing.frames().map(|times| times.sum).collect();
-    (allocations, airglow_math::statistics::median(&times).unwrap())
+    (counted, airglow_math::statistics::median(&times).unwrap())
 }
 
 /// The results of the plan as it stands.
@@ -180,5 +168,72 @@ fn an_instance_that_comes_and_goes_costs_nothing_when_away() {
         built.shown.set(1, true).unwrap();
         assert!(results(&fixture, &mut built) == whole, "{method:?}: it came back otherwise");
         assert!(built.shown.set(3, true).unwrap_err().to_string().contains("below 3"));
+    }
+}
+
+/// What a host without a graph gives: its light, and the scratch that was asked for.
+fn bindings(context: &Context, prepared: &Prepared, light: &Buffer) -> Bindings {
+    let mut bindings = Bindings::default();
+    bindings.buffers.insert(Resource::UniformLight, light.into());
+    for (resource, need) in &prepared.needs {
+        let label = Label::new("host", "scratch");
+        match need {
+            Need::Scratch(ResourceDesc::Buffer(desc)) => {
+                let usage = BufferUsageFlags::STORAGE_BUFFER
+                    | BufferUsageFlags::UNIFORM_BUFFER
+                    | BufferUsageFlags::TRANSFER_DST;
+                let desc = BufferDesc { usage, ..*desc };
+                let buffer = context.create_buffer(label, &desc, Location::Device).unwrap();
+                bindings.buffers.insert(*resource, (&buffer).into());
+            }
+            Need::Scratch(ResourceDesc::Image(desc)) => {
+                let usage = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
+                let image = context.create_image(label, &ImageDesc { usage, ..*desc }).unwrap();
+                bindings.images.insert(*resource, image.full_view().unwrap());
+            }
+            Need::Ours { .. } | Need::Host => {}
+        }
+    }
+    bindings
+}
+
+#[test]
+fn a_frame_without_a_graph_allocates_nothing_after_warm_up() {
+    let fixture = fixture();
+    let context = fixture.context();
+    for method in [Method::Compute, Method::Fragment] {
+        let mut numbers = Numbers::new(103);
+        let mut relight = Relight::new(context, Settings { method, ..Settings::default() }).unwrap();
+        let host = light(context, &mut numbers);
+        let instances = instances(context, &mut relight, &mut numbers);
+        let light = Light::Uniform { coefficients: (), rotation: DQuat::IDENTITY };
+        let frame: Frame<(), ()> = Frame { light, instances, target: None };
+        let prepared = relight.prepare(context, &frame).unwrap();
+        let bindings = bindings(context, &prepared, &host);
+        let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
+        let mut counted = 0;
+        for frame in 0..WARM_UP + 10 {
+            let recorded = frames.frame(FrameSemaphores::default(), |commands| {
+                let before = allocations();
+                prepared.shown.set(1, frame % 3 == 0).unwrap();
+                // SAFETY: the loop's command buffer is recording, in this frame, and is submitted once.
+                let mut recorder = unsafe { Recorder::new(context, commands) };
+                // What the frame before wrote and read is written anew.
+                for access in
+                    [Access::ComputeStorageRead, Access::ComputeStorageWrite, Access::TransferDestination]
+                {
+                    recorder.memory_barrier(access, Access::ComputeStorageWrite)?;
+                    recorder.memory_barrier(access, Access::TransferDestination)?;
+                }
+                let recorded = prepared.record(&mut recorder, &bindings);
+                let allocated = allocations() - before;
+                counted += if frame < WARM_UP { 0 } else { allocated };
+                recorded
+            });
+            recorded.unwrap();
+        }
+        frames.finish().unwrap();
+        assert!(allocations() > 0, "nothing is counted");
+        assert_eq!(counted, 0, "{method:?}");
     }
 }

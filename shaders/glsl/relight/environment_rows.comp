@@ -6,7 +6,8 @@
 // ORDER - 1, in a fixed order: runs of RUN texels, then their sums, then a tree. What is not finite counts as 0, so
 // that a bad texel of a live environment darkens its own solid angle and nothing else.
 //
-// ORDER  1-6
+// ORDER   1-6
+// HEALTH  1: texels that are not finite, and others that are negative, are counted
 
 #define AZIMUTHS (2 * ORDER - 1)
 #define WORKGROUP 128
@@ -26,6 +27,13 @@ layout(std430, set = 0, binding = 2) buffer Rows {
     vec4 sums[];
 } rows;
 
+#if HEALTH
+layout(std430, set = 0, binding = 3) buffer Health {
+    uint not_finite;
+    uint negative;
+} health;
+#endif
+
 layout(push_constant) uniform Size {
     uint width;
     uint height;
@@ -41,10 +49,22 @@ vec3 finite(vec3 radiance)
     return mix(radiance, vec3(0.0), equal(exponent, uvec3(0x7f800000u)));
 }
 
+#if HEALTH
+// 1 for a texel that is not finite, else 1 for one that is negative.
+uvec2 bad(vec3 texel)
+{
+    bool not_finite = any(notEqual(floatBitsToUint(texel), floatBitsToUint(finite(texel))));
+    return uvec2(not_finite, !not_finite && any(lessThan(texel, vec3(0.0))));
+}
+#endif
+
 void main()
 {
     uint row = gl_WorkGroupID.x;
     uint lane = gl_LocalInvocationID.x;
+#if HEALTH
+    uvec2 counts = uvec2(0u);
+#endif
     vec3 total[AZIMUTHS];
     for (uint m = 0u; m < uint(AZIMUTHS); ++m) { total[m] = vec3(0.0); }
     for (uint first = lane; first < size.width; first += uint(RUN * WORKGROUP)) {
@@ -54,6 +74,9 @@ void main()
             uint column = first + k * uint(WORKGROUP);
             if (column < size.width) {
                 vec3 radiance = finite(texelFetch(environment, ivec2(column, row), 0).rgb);
+#if HEALTH
+                counts += bad(texelFetch(environment, ivec2(column, row), 0).rgb);
+#endif
                 for (uint m = 0u; m < uint(AZIMUTHS); ++m) {
                     run[m] = fma(vec3(columns.integrals[column * uint(AZIMUTHS) + m]), radiance, run[m]);
                 }
@@ -61,6 +84,10 @@ void main()
         }
         for (uint m = 0u; m < uint(AZIMUTHS); ++m) { total[m] += run[m]; }
     }
+#if HEALTH
+    if (counts.x > 0u) { atomicAdd(health.not_finite, counts.x); }
+    if (counts.y > 0u) { atomicAdd(health.negative, counts.y); }
+#endif
     for (uint m = 0u; m < uint(AZIMUTHS); ++m) { partial[m * uint(WORKGROUP) + lane] = vec4(total[m], 0.0); }
     for (uint half_count = uint(WORKGROUP) / 2u; half_count > 0u; half_count /= 2u) {
         barrier();

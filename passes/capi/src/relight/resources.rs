@@ -39,6 +39,8 @@ pub enum AirglowResource {
     Rectangle = 14,
     /// The results of all instances.
     Results = 15,
+    /// Counters of bad texels.
+    Health = 16,
 }
 
 /// The number and the index of a resource.
@@ -51,6 +53,7 @@ pub(super) fn number(resource: Resource) -> (AirglowResource, u32) {
         Resource::RowSums => (R::RowSums, 0),
         Resource::MapCoefficients => (R::MapCoefficients, 0),
         Resource::EnvironmentLight => (R::EnvironmentLight, 0),
+        Resource::Health => (R::Health, 0),
         Resource::UniformLight => (R::UniformLight, 0),
         Resource::Lights => (R::Lights, 0),
         Resource::Tensor => (R::Tensor, 0),

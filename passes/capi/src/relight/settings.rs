@@ -84,6 +84,7 @@ impl AirglowRelightSettings {
             light: either("light", self.light, [LightKind::Uniform, LightKind::Vertex])?,
             visibility: either("visibility", self.visibility, [false, true])?,
             normals: either("normals", self.normals, [false, true])?,
+            ..Settings::default()
         };
         settings.check()?;
         Ok(settings)

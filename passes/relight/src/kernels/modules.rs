@@ -21,6 +21,7 @@ macro_rules! by_order {
 pub(super) type ByOrder = [&'static [u8]; 6];
 
 pub(super) static ENVIRONMENT_ROWS: ByOrder = by_order!("environment_rows", "");
+pub(super) static ENVIRONMENT_ROWS_HEALTH: ByOrder = by_order!("environment_rows.HEALTH", "");
 pub(super) static ENVIRONMENT_BANDS: ByOrder = by_order!("environment_bands", "");
 pub(super) static ROTATE: ByOrder = by_order!("rotate", "");
 pub(super) static PRODUCT: ByOrder = by_order!("product", "");

@@ -16,6 +16,7 @@ use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Picture, Renderer, Settings, WARM_UP};
 use crate::host::{device, truth};
+use crate::measure::health::{self, Count};
 use crate::measure::pass::{PassStat, counted};
 use crate::measure::profiler::ProfilerCost;
 use crate::measure::trace::{self, Trace};
@@ -86,6 +87,10 @@ pub struct Arguments {
     /// Have the device count what each pass makes it do, too: vertices, primitives, invocations of shaders.
     #[arg(long)]
     pipeline_statistics: bool,
+    /// Have the passes count what is wrong with their inputs, too: texels of the environment that are not finite, and
+    /// negative ones.
+    #[arg(long)]
+    health: bool,
     /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
     #[arg(long, value_name = "FILE.json")]
     trace: Option<PathBuf>,
@@ -119,6 +124,8 @@ struct Stat {
     record_ms: f64,
     /// What measuring adds to a frame; with --stat alone.
     profiler: Option<ProfilerCost>,
+    /// What the passes counted; with --health, where they have anything to count.
+    health: Vec<Count>,
     /// Device memory by owner.
     memory: Vec<MemoryStat>,
 }
@@ -136,13 +143,17 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         check_extension(path)?;
     }
     let scene = arguments.scene.load(output)?;
-    let source = match arguments.reference {
+    let mut source = match arguments.reference {
         true => Source::Colours(reference(&scene, arguments, output)?),
         false => Source::of_scene(&scene, arguments.leaves_out_relight(), &arguments.scene.cache, output)?,
     };
+    if arguments.health {
+        source.count_health();
+    }
     let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
         let mut settings = settings(arguments);
         let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
+        renderer.health().map_or(Ok(()), |health| health::clear(device, health))?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let statistics = arguments.pipeline_statistics;
         let mut picture = renderer.draw_counted(&settings, arguments.frames as usize, statistics)?;
@@ -158,7 +169,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         if let Some(path) = &arguments.trace {
             write_trace(path, device, &picture)?;
         }
-        let stat = stat(device, &settings, &picture, cost);
+        let mut stat = stat(device, &settings, &picture, cost);
+        if let Some(health) = renderer.health() {
+            stat.health = health::collect(device, health)?;
+        }
         Ok((picture, stat))
     })?;
     for path in &arguments.output {
@@ -249,6 +263,7 @@ fn stat(
         coverage: timing.map(|timing| timing.coverage),
         record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
         profiler,
+        health: Vec::new(),
         memory: device
             .context()
             .memory_report()
@@ -272,6 +287,7 @@ fn text(stat: &Stat) -> String {
         _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
     }
     text.push_str(&stat.profiler.as_ref().map_or(String::new(), ProfilerCost::text));
+    text.extend(stat.health.iter().map(Count::line));
     for owner in &stat.memory {
         text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));
     }

@@ -75,6 +75,13 @@ impl Source {
         }
     }
 
+    /// Has the pass count bad texels of the environment, where there is the pass.
+    pub fn count_health(&mut self) {
+        if let Self::Relight(transfer) = self {
+            transfer.health = true;
+        }
+    }
+
     /// What the device must offer.
     pub fn requirements(&self, scene: &Scene) -> Requirements {
         let requirements = match self {
@@ -101,7 +108,8 @@ impl Lighting {
 impl Lit {
     fn new(device: &Device<'_>, scene: &Scene, transfer: &SceneTransfer) -> Outcome<Self> {
         let context = device.context();
-        let mut relight = Relight::new(context, relight_settings(scene)).map_err(Failure::work)?;
+        let settings = airglow::relight::Settings { health: transfer.health, ..relight_settings(scene) };
+        let mut relight = Relight::new(context, settings).map_err(Failure::work)?;
         let mut meshes = Vec::with_capacity(transfer.transfers.len());
         for (transfer, account) in transfer.transfers.iter().zip(&transfer.accounts) {
             let count = transfer.vertex_count as u32;

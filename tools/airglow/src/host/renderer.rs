@@ -5,7 +5,7 @@ use std::sync::Arc;
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Buffer, Calibration, Execution, FrameTimes, Imports, Label, Location, Timing, TimingSummary,
+    Buffer, Calibration, Execution, FrameTimes, Health, Imports, Label, Location, Timing, TimingSummary,
 };
 use airglow_graph::{BufferDesc, ImageDesc, LeftOut, Plan};
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
@@ -262,6 +262,14 @@ impl<'d> Renderer<'d> {
         let passes = timing.map_or(Vec::new(), |timing| timing.passes);
         let ours = || passes.iter().filter(|pass| pass.name.starts_with("relight"));
         Ok(ours().next().is_some().then(|| ours().map(|pass| pass.median).sum()))
+    }
+
+    /// The counters of the relight pass, where it was asked to count.
+    pub fn health(&mut self) -> Option<&mut Health> {
+        match &mut self.lighting {
+            Lighting::Relight(lit) => lit.relight.health(),
+            _ => None,
+        }
     }
 
     /// What a plan says of the time that leaving the pass out saves, seconds.

@@ -22,6 +22,8 @@ pub struct SceneTransfer {
     pub instances: Vec<InstanceTransfer>,
     /// How each transfer came to be.
     pub accounts: Vec<Account>,
+    /// Whether the pass is to count bad texels of the environment.
+    pub health: bool,
 }
 
 /// Which transfer lights an instance.
@@ -81,7 +83,7 @@ impl Job<'_> {
 pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output) -> Outcome<SceneTransfer> {
     let holes = holes::of_scene(scene);
     let (jobs, instances) = jobs(scene, quality.shadow, &holes);
-    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new() };
+    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new(), health: false };
     for job in &jobs {
         let (transfer, account) = bake(job, quality, cache, output)?;
         result.transfers.push(transfer);
@@ -96,7 +98,7 @@ pub fn unbaked(scene: &Scene) -> Outcome<SceneTransfer> {
     let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
     let (jobs, instances) = jobs(scene, scene.quality.shadow, &none);
     let order = scene.quality.order as usize;
-    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new() };
+    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new(), health: false };
     for job in &jobs {
         let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
         result.transfers.push(baked.transfer);

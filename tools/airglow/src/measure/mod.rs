@@ -1,5 +1,6 @@
 //! What passes do and take: counts beside times, what measuring costs, and all of it on a time line.
 
+pub mod health;
 pub mod pass;
 pub mod profiler;
 pub mod trace;
