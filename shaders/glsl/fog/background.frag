@@ -80,7 +80,8 @@ void main()
                 glow += light_of(ninth, length(ninth.center.xyz - direction));
             }
         } else {
-            glow += light_of(part, chord);
+            // The mean of 1 / chord over an evenly lit disc is larger than its value in the middle.
+            glow += light_of(part, chord) * (1.0 + part.flux.w / (8.0 * PI * chord * chord));
         }
         bool ended = false;
         while (true) {

@@ -157,7 +157,7 @@ pub fn spread(bench: &Bench<'_>, rows: &[SpreadRow]) -> Result<Vec<Result<Evalua
         return Ok(Vec::new());
     }
     let pipeline = bench.pipeline("fog spread rows", &kernels::spread_rows(), &SURFACE_ROW_BINDINGS[..2])?;
-    let input = bench.rows(&accepted)?;
+    let input = bench.upload(&accepted)?;
     let values = bench.values(&pipeline, &[&input], accepted.len(), None)?;
     Ok(join(references, values.into_iter().map(f64::from).collect()))
 }
@@ -174,7 +174,7 @@ fn look_up(bench: &Bench<'_>, preset: Preset, rows: &[SurfaceRow]) -> Result<Vec
     let Some(buffer) = tables.buffer() else { return Ok(Vec::new()) };
     let pipeline =
         bench.pipeline("fog surface rows", &kernels::surface_rows(preset), &SURFACE_ROW_BINDINGS)?;
-    let input = bench.rows(&constants)?;
+    let input = bench.upload(&constants)?;
     bench.values(&pipeline, &[&input, buffer], constants.len(), Some(&tables))
 }
 
@@ -193,7 +193,7 @@ impl Bench<'_> {
         })
     }
 
-    fn rows<T: Pod>(&self, rows: &[T]) -> Result<Buffer, GpuError> {
+    fn upload<T: Pod>(&self, rows: &[T]) -> Result<Buffer, GpuError> {
         let desc = BufferDesc { size: size_of_val(rows) as u64, usage: BufferUsageFlags::STORAGE_BUFFER };
         let buffer = self.context.create_buffer(Label::new("bench", "fog rows"), &desc, Location::Upload)?;
         buffer.write(0, rows)?;
