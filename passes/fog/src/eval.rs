@@ -1,5 +1,6 @@
 //! The pass's own GPU code on rows of parameters, many rows a dispatch, beside the f64 reference.
 
+pub mod complete;
 pub mod surface;
 
 use std::f64::consts::PI;

@@ -5,11 +5,14 @@
 use std::f64::consts::PI;
 
 use airglow_fog::eval::Evaluated;
+use airglow_fog::eval::complete::{CompleteRow, radiance};
 use airglow_fog::eval::surface::{SpreadRow, SurfaceRow, spread, surface};
+use airglow_fog::reference::surface::Surface;
 use airglow_fog::{Bench, Fog, FogError, Preset, Settings};
 use airglow_gpu::{GpuError, Recorder};
 use airglow_math::sequence::hammersley;
 use airglow_tests::device::{Fixture, fixture_with};
+use glam::DVec3;
 
 fn with_bench<T>(evaluate: impl Fn(&Bench<'_>) -> T) -> T {
     let fixture: Fixture = fixture_with(&Fog::requirements(&Settings::default()));
@@ -112,5 +115,35 @@ fn rows_out_of_range_are_refused_and_the_others_run() {
         assert!((published / 0.874_888 - 1.0).abs() < 3e-3, "{published}");
         let at_the_light = SpreadRow { optical_distance: 1.0, gamma: 0.0, factored: false };
         assert!(spread(bench, &[at_the_light]).unwrap()[0].is_err());
+    });
+}
+
+#[test]
+fn the_complete_model_of_a_surface_is_the_reference() {
+    with_bench(|bench| {
+        let mut rows = Vec::new();
+        for (exponent, extinction) in [(1.0, 1e-6), (12.0, 0.05), (1000.0, 0.4)] {
+            for i in 0..12 {
+                let [u, v] = hammersley(i, 12).map(f64::from);
+                let normal = DVec3::new(u - 0.5, v - 0.3, 0.4).normalize();
+                rows.push(CompleteRow {
+                    lamp: DVec3::new(3.0 * v - 1.0, 1.0 + u, -2.0),
+                    place: DVec3::new(2.0 * u - 1.0, 0.3 - v, -4.0),
+                    normal,
+                    surface: Surface { diffuse: 0.2, specular: 0.5, exponent },
+                    extinction: [1.0, 1.3, 0.4].map(|factor| factor * extinction),
+                    scattering: [0.9, 1.0, 0.4].map(|factor| factor * extinction),
+                });
+            }
+        }
+        let mut worst = 0.0_f64;
+        for (row, values) in rows.iter().zip(radiance(bench, &rows).unwrap()) {
+            for (value, truth) in values.into_iter().zip(row.reference().unwrap()) {
+                let error = (value - truth).abs() / truth;
+                assert!(error < 5e-4, "{row:?}: {value} and {truth}");
+                worst = worst.max(error);
+            }
+        }
+        println!("complete model: worst {worst:.1e}");
     });
 }

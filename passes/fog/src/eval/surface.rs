@@ -158,7 +158,7 @@ pub fn spread(bench: &Bench<'_>, rows: &[SpreadRow]) -> Result<Vec<Result<Evalua
     }
     let pipeline = bench.pipeline("fog spread rows", &kernels::spread_rows(), &SURFACE_ROW_BINDINGS[..2])?;
     let input = bench.upload(&accepted)?;
-    let values = bench.values(&pipeline, &[&input], accepted.len(), None)?;
+    let values = bench.values(&pipeline, &[&input], [accepted.len(), 1], None)?;
     Ok(join(references, values.into_iter().map(f64::from).collect()))
 }
 
@@ -175,11 +175,11 @@ fn look_up(bench: &Bench<'_>, preset: Preset, rows: &[SurfaceRow]) -> Result<Vec
     let pipeline =
         bench.pipeline("fog surface rows", &kernels::surface_rows(preset), &SURFACE_ROW_BINDINGS)?;
     let input = bench.upload(&constants)?;
-    bench.values(&pipeline, &[&input, buffer], constants.len(), Some(&tables))
+    bench.values(&pipeline, &[&input, buffer], [constants.len(), 1], Some(&tables))
 }
 
 impl Bench<'_> {
-    fn pipeline(
+    pub(super) fn pipeline(
         &self,
         name: &str,
         spirv: &[u32],
@@ -193,23 +193,23 @@ impl Bench<'_> {
         })
     }
 
-    fn upload<T: Pod>(&self, rows: &[T]) -> Result<Buffer, GpuError> {
+    pub(super) fn upload<T: Pod>(&self, rows: &[T]) -> Result<Buffer, GpuError> {
         let desc = BufferDesc { size: size_of_val(rows) as u64, usage: BufferUsageFlags::STORAGE_BUFFER };
         let buffer = self.context.create_buffer(Label::new("bench", "fog rows"), &desc, Location::Upload)?;
         buffer.write(0, rows)?;
         Ok(buffer)
     }
 
-    /// Runs a kernel of one f32 a row, whose results follow `inputs` in its bindings; `tables` are filled before.
-    fn values(
+    /// Runs a kernel over rows of some f32 each, whose results follow `inputs` in its bindings; `tables` are filled before.
+    pub(super) fn values(
         &self,
         pipeline: &ComputePipeline,
         inputs: &[&Buffer],
-        count: usize,
+        [count, each]: [usize; 2],
         tables: Option<&LobeTables>,
     ) -> Result<Vec<f32>, FogError> {
         let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_SRC;
-        let desc = BufferDesc { size: 4 * count as u64, usage };
+        let desc = BufferDesc { size: 4 * (count * each) as u64, usage };
         let output =
             self.context.create_buffer(Label::new("bench", "fog results"), &desc, Location::Device)?;
         let mut copy = None;
