@@ -9,9 +9,10 @@ use airglow_math::World;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+pub use crate::kernels::WALL;
 use crate::kernels::{self, Rows};
 use crate::pack::{LightConstants, pack};
-use crate::{Camera, FogError, Light, Medium, Preset, Settings, View};
+use crate::{Camera, FogError, Light, Medium, PhaseKind, Preset, Settings, View};
 
 /// Records what it is given into one frame of the bench's context, submits it and waits until it is done.
 pub type Run<'a> =
@@ -96,9 +97,28 @@ impl Bench<'_> {
     /// [`FogError::Range`] for the first ray that no frame takes; [`FogError::Kernel`] where a medium has another phase
     /// function than `settings`, or thins with one that is not isotropic.
     pub fn airlight(&self, settings: &Settings, rays: &[Ray]) -> Result<Vec<[f32; 3]>, FogError> {
+        self.rows(Rows::of(settings)?, settings, rays)
+    }
+
+    /// The same at the reference preset in isotropic media by a shader that defines `FOG_VISIBILITY`: no light arrives
+    /// beyond [`WALL`].
+    ///
+    /// # Errors
+    /// As [`Self::airlight`].
+    pub fn airlight_with_wall(&self, rays: &[Ray]) -> Result<Vec<[f32; 3]>, FogError> {
+        let settings = Settings {
+            preset: Preset::Reference,
+            phase: PhaseKind::Isotropic,
+            bound: 0.0,
+            ..Settings::default()
+        };
+        self.rows(Rows::Wall, &settings, rays)
+    }
+
+    fn rows(&self, rows: Rows, settings: &Settings, rays: &[Ray]) -> Result<Vec<[f32; 3]>, FogError> {
         let pipeline = self.context.create_compute_pipeline(&ComputePipelineDesc {
             name: "fog airlight rows",
-            spirv: &kernels::rows(Rows::of(settings)?),
+            spirv: &kernels::rows(rows),
             bindings: &ROW_BINDINGS,
             push_constant_size: size_of::<RowSettings>() as u32,
         })?;

@@ -30,6 +30,8 @@ static ROWS_HEIGHT: [&[u8]; 2] = [
     include_bytes!("../../../shaders/spirv/fog/airlight_rows_height.FOG_TAPS6.isotropic.spv").as_slice(),
     include_bytes!("../../../shaders/spirv/fog/airlight_rows_height.FOG_TAPS16.isotropic.spv").as_slice(),
 ];
+static ROWS_WALL: &[u8] =
+    include_bytes!("../../../shaders/spirv/fog/airlight_rows_wall.isotropic.spv").as_slice();
 static RECTANGLE: &[u8] = include_bytes!("../../../shaders/spirv/fog/rectangle.spv").as_slice();
 
 /// By preset.
@@ -44,7 +46,6 @@ static SURFACE_ROWS: [&[u8]; 2] = [
 ];
 static BACKGROUND_PARTS: &[u8] = include_bytes!("../../../shaders/spirv/fog/background_parts.spv").as_slice();
 static BACKGROUND: &[u8] = include_bytes!("../../../shaders/spirv/fog/background.spv").as_slice();
-static COMPLETE_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/complete_rows.spv").as_slice();
 static SPREAD_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/spread_rows.spv").as_slice();
 
 /// Bindings of the airlight pass: the frame, the surfaces' radiance, their depth.
@@ -67,7 +68,12 @@ pub(crate) const FARTHEST: f32 = 1e32;
 pub(crate) enum Rows {
     Homogeneous(Preset, PhaseKind),
     Thinning(Preset),
+    /// Isotropic at the reference preset, in a host that lets no light beyond [`WALL`].
+    Wall,
 }
+
+/// Where `airlight_rows_wall` has its wall: the plane at this z relative to the eye, metres.
+pub const WALL: f64 = -6.0;
 
 impl Rows {
     /// That of the settings.
@@ -88,6 +94,7 @@ pub(crate) fn rows(rows: Rows) -> Vec<u32> {
     words(match rows {
         Rows::Homogeneous(preset, phase) => ROWS[preset as usize][phase as usize],
         Rows::Thinning(preset) => ROWS_HEIGHT[preset as usize],
+        Rows::Wall => ROWS_WALL,
     })
 }
 
@@ -99,11 +106,6 @@ pub(crate) fn lobe_table(preset: Preset) -> Vec<u32> {
 /// The glow through lobes of rows of parameters.
 pub(crate) fn surface_rows(preset: Preset) -> Vec<u32> {
     words(SURFACE_ROWS[preset as usize])
-}
-
-/// The complete model of rows of parameters.
-pub(crate) fn complete_rows() -> Vec<u32> {
-    words(COMPLETE_ROWS)
 }
 
 /// The point spread function of rows of parameters.

@@ -2,6 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 // The airlight of rows of parameters, by the functions of the pass: for `airglow eval`, stability and tests.
 
+#if FOG_WALL
+// In the place of a host's shadow map: no light arrives beyond a wall across the view.
+#define FOG_VISIBILITY(light, position) float((position).z >= -6.0)
+#endif
 #include "fog/airlight.glsl"
 
 layout(local_size_x = 64) in;

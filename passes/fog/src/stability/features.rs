@@ -90,6 +90,14 @@ fn all() -> Result<Vec<Case>, FogError> {
         0,
         truth(&behind, EXTINCTION, crossing, 20.0)?,
     );
+    for gap in [1e-4, 1e-3, 1e-2, 0.1, 1.0] {
+        let position = DVec3::new(LIGHT.x, LIGHT.y, -6.0 - gap);
+        let near = ray(Light { position, ..behind.light });
+        let truth = truth(&near, EXTINCTION, crossing, 20.0)?;
+        add(&format!("a lamp {gap} m behind a wall, its room seen from outside"), near, 0, truth);
+        let before = Ray { distance: 0.999 * crossing, ..near };
+        add(&format!("a lamp {gap} m behind a wall, the ray ends before it"), before, 0, 0.0);
+    }
     let before = Ray { distance: 0.999 * crossing, ..behind };
     add("a lamp behind a wall, the ray ends before it", before, 0, 0.0);
 
