@@ -56,7 +56,7 @@ pub enum Evaluator {
         /// How many.
         count: u32,
     },
-    /// The pass's rule; 2, 4, 6, 8, 12 or 16 taps.
+    /// The pass's rule; 1, 2, 4, 6, 8, 12 or 16 taps.
     Taps {
         /// How many.
         count: u32,
@@ -164,13 +164,14 @@ impl Evaluator {
             Self::Poles { count: 4 } => module!("rival_poles", "POLES4"),
             Self::Poles { count: 7 } => module!("rival_poles", "POLES7"),
             Self::Poles { count } => return none("poles", count, "4 or 7"),
+            Self::Taps { count: 1 } => module!("rival_taps", "TAPS1"),
             Self::Taps { count: 2 } => module!("rival_taps", "TAPS2"),
             Self::Taps { count: 4 } => module!("rival_taps", "TAPS4"),
             Self::Taps { count: 6 } => module!("rival_taps", "TAPS6"),
             Self::Taps { count: 8 } => module!("rival_taps", "TAPS8"),
             Self::Taps { count: 12 } => module!("rival_taps", "TAPS12"),
             Self::Taps { count: 16 } => module!("rival_taps", "TAPS16"),
-            Self::Taps { count } => return none("taps", count, "2, 4, 6, 8, 12 or 16"),
+            Self::Taps { count } => return none("taps", count, "1, 2, 4, 6, 8, 12 or 16"),
         })
     }
 

@@ -1,6 +1,10 @@
 // The pass's own taps, with TAPS of them; rules beside the two that ship.
 
 #define FOG_TAPS TAPS
+#if TAPS == 1
+const float FOG_CUT = 3.0;
+const vec2 FOG_RULE[1] = vec2[](vec2(0.5, 1.0));
+#endif
 #if TAPS == 2
 const float FOG_CUT = 4.0;
 const vec2 FOG_RULE[1] = vec2[](

@@ -23,7 +23,8 @@ use crate::report::relight::workload::{Effort, Workload};
 /// with care. Where the pass has nothing to do, it says what was left out, why, and what would bring it back.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  airglow explain relight assets/scenes/spot.toml")]
+  airglow explain relight assets/scenes/spot.toml
+  airglow explain fog assets/scenes/street.toml")]
 pub struct Arguments {
     /// The pass.
     #[arg(value_enum)]
@@ -71,8 +72,11 @@ struct Rival {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
-    let Pass::Relight = arguments.pass;
     let scene = arguments.scene.load(output)?;
+    #[cfg(feature = "fog")]
+    if arguments.pass == Pass::Fog {
+        return fog(&scene, global, output);
+    }
     if scene.environment.is_none() {
         let left_out = lighting::no_environment(lighting::relight_bytes(&scene), None);
         return output.result(&left_out, left_out_text);
@@ -91,7 +95,29 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         ];
         Ok(Explanation { machine: device.machine(), workload: workload.description.clone(), knobs })
     })?;
-    output.result(&explanation, |explanation| text(explanation, scene.quality.shadow))
+    output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
+}
+
+/// The knobs of fog, none of which a scene file names.
+#[cfg(feature = "fog")]
+fn fog(scene: &Scene, global: &Global, output: &Output) -> Outcome {
+    use crate::report::fog::{Effort, Measurement};
+    let settings = airglow::fog::Settings::default();
+    if scene.medium.is_none() {
+        let left_out = crate::host::fog::no_medium();
+        return output.result(&left_out, left_out_text);
+    }
+    let explanation = device::with(global, &airglow::fog::Fog::requirements(&settings), |device| {
+        let (workload, curves) = Measurement { device, effort: Effort::new(true), output }.explain(scene)?;
+        let shipped =
+            |curve: &Curve| curve.chosen.as_ref().map_or(String::new(), |chosen| chosen.setting.clone());
+        let knobs = curves.into_iter().map(|curve| {
+            let setting = shipped(&curve);
+            knob(curve, setting, "the pass's default".to_owned())
+        });
+        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+    })?;
+    output.result(&explanation, |explanation| text(explanation, None))
 }
 
 fn left_out_text(left_out: &LeftOut) -> String {
@@ -146,13 +172,15 @@ fn rival(point: &Point) -> Rival {
     }
 }
 
-fn text(explanation: &Explanation, shadow: Shadow) -> String {
+fn text(explanation: &Explanation, shadow: Option<Shadow>) -> String {
     let machine = &explanation.machine;
     let mut text = format!("{}\n{} ({})\n", explanation.workload, machine.device, machine.driver);
     if machine.software {
         text.push_str("This device computes on the CPU: the order of rivals may differ on a GPU.\n");
     }
-    text.push_str(&format!("shadows: {shadow:?}\n"));
+    if let Some(shadow) = shadow {
+        text.push_str(&format!("shadows: {shadow:?}\n"));
+    }
     for knob in &explanation.knobs {
         let Knob { name, setting, source, timed, norm, question, curve_chooses, because, rivals } = knob;
         text.push_str(&format!("\n{name}: {setting}, chosen by {source}\n"));

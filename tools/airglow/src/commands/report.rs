@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "fog")]
+use airglow::fog::Fog;
 use airglow::relight::{Relight, Settings, Storage};
 use clap::{Args, ValueEnum};
 
@@ -10,6 +12,8 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
 use crate::host::device;
 use crate::output::Output;
+#[cfg(feature = "fog")]
+use crate::report;
 use crate::report::date::today;
 use crate::report::model::{Machine, Report};
 use crate::report::relight::curves::Measurement;
@@ -25,15 +29,17 @@ use crate::report::write;
 #[command(after_help = "Examples:
   airglow report relight -o out/report
   airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
+  airglow report fog -o out/fog
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
 pub struct Arguments {
     /// The pass.
     #[arg(value_enum, default_value_t = Pass::Relight)]
     pass: Pass,
-    /// The scene to light: a scene file or a glTF file.
-    #[arg(long, value_name = "SCENE", default_value = "assets/scenes/spot.toml")]
-    scene: PathBuf,
+    /// The scene to light: a scene file or a glTF file. For relight assets/scenes/spot.toml unless given, for fog
+    /// assets/scenes/street.toml.
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
     #[arg(long, value_name = "FILE")]
     environment: Option<PathBuf>,
@@ -53,12 +59,44 @@ pub struct Arguments {
 pub enum Pass {
     /// Relighting by precomputed radiance transfer.
     Relight,
+    /// Single scattering from lights inside a medium.
+    #[cfg(feature = "fog")]
+    Fog,
+}
+
+impl Pass {
+    /// The scene that shows it.
+    fn scene(self) -> &'static str {
+        match self {
+            Self::Relight => "assets/scenes/spot.toml",
+            #[cfg(feature = "fog")]
+            Self::Fog => "assets/scenes/street.toml",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Relight => "relight",
+            #[cfg(feature = "fog")]
+            Self::Fog => "fog",
+        }
+    }
+}
+
+impl Arguments {
+    fn scene(&self) -> PathBuf {
+        self.scene.clone().unwrap_or_else(|| PathBuf::from(self.pass.scene()))
+    }
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let reports = if arguments.merge.is_empty() {
-        vec![measure(arguments, global, output)?]
+        vec![match arguments.pass {
+            Pass::Relight => relight(arguments, global, output)?,
+            #[cfg(feature = "fog")]
+            Pass::Fog => fog(arguments, global, output)?,
+        }]
     } else {
         let read = arguments.merge.iter().map(|path| write::read(path)).collect::<Outcome<Vec<_>>>()?;
         read.into_iter().flatten().collect()
@@ -69,8 +107,29 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     })
 }
 
-fn measure(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
-    let scene = SceneOptions::plain(&arguments.scene, arguments.environment.as_deref()).load(output)?;
+/// The report on fog.
+#[cfg(feature = "fog")]
+fn fog(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    let scene = SceneOptions::plain(&arguments.scene(), None).load(output)?;
+    let requirements = Fog::requirements(&airglow::fog::Settings::default());
+    device::with(global, &requirements, |device| {
+        let effort = report::fog::Effort::new(arguments.quick);
+        let measured = report::fog::Measurement { device, effort, output }.all(&scene)?;
+        Ok(Report {
+            pass: "fog".to_owned(),
+            machine: device.machine(),
+            command: command(arguments, &device.machine()),
+            date: today(),
+            workload: measured.workload,
+            remarks: measured.remarks,
+            curves: measured.curves,
+            numbers: measured.numbers,
+        })
+    })
+}
+
+fn relight(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    let scene = SceneOptions::plain(&arguments.scene(), arguments.environment.as_deref()).load(output)?;
     let effort = Effort::new(arguments.quick);
     let workload = Workload::new(&scene, &effort, output)?;
     let requirements = Relight::requirements(&Settings { order: 6, ..Settings::default() });
@@ -93,6 +152,7 @@ fn measure(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<R
             workload: workload.description.clone(),
             remarks: remarks(&effort, &workload),
             curves,
+            numbers: Vec::new(),
         })
     })
 }
@@ -105,8 +165,9 @@ fn command(arguments: &Arguments, machine: &Machine) -> String {
         .map_or(String::new(), |path| format!(" --environment {}", path.display()));
     let quick = if arguments.quick { " --quick" } else { "" };
     format!(
-        "airglow report relight --scene {}{environment} -o {}{quick} --device \"{}\"",
-        arguments.scene.display(),
+        "airglow report {} --scene {}{environment} -o {}{quick} --device \"{}\"",
+        arguments.pass.name(),
+        arguments.scene().display(),
         arguments.output.display(),
         machine.device
     )

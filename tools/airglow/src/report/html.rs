@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::model::{Curve, Errors, Point, Report};
+use super::model::{Curve, Distribution, Errors, Number, Point, Report};
 use super::plot::{self, Cost};
 use super::ranking;
 use crate::failure::Outcome;
@@ -69,6 +69,7 @@ fn header(html: &mut String, report: &Report) {
     for remark in &report.remarks {
         let _ = write!(html, "<p>{}</p>", escape(remark));
     }
+    numbers(html, &report.numbers);
 }
 
 fn section(html: &mut String, measured: &[(&Report, &Curve)]) -> Outcome {
@@ -98,13 +99,22 @@ fn points(html: &mut String, curve: &Curve) {
         "<table><tr><th>setting</th><th>median ms</th><th>p5</th><th>p95</th><th>n</th><th>memory held</th>\
          <th>read + written</th><th>bound</th><th>invocations</th><th>dispatches</th><th>draws</th><th>copies</th>\
          <th>barriers</th>\
-         <th>arithmetic error</th><th>setting error</th><th>model error</th></tr>",
+         <th>arithmetic error</th><th>setting error</th><th>model error</th>",
     );
+    let random = curve.points.iter().any(|point| point.distribution.is_some());
+    html.push_str(if random {
+        "<th>median</th><th>p99</th><th>largest</th><th>below</th><th>not finite or negative</th></tr>"
+    } else {
+        "</tr>"
+    });
     for point in &curve.points {
         let class = if curve.is_chosen(point) { " class=\"chosen\"" } else { "" };
         let _ = write!(html, "<tr{class}><td>{}</td>", escape(&point.setting));
         for cell in cells(point) {
             let _ = write!(html, "<td>{cell}</td>");
+        }
+        if random {
+            html.push_str(&spread(point.distribution));
         }
         html.push_str("</tr>");
     }
@@ -136,6 +146,29 @@ fn cells(point: &Point) -> Vec<String> {
         error(point.error.setting),
         error(point.error.model),
     ]
+}
+
+/// The cells of errors over random inputs.
+fn spread(distribution: Option<Distribution>) -> String {
+    let Some(Distribution { median, p99, largest, below, bad }) = distribution else {
+        return "<td>—</td>".repeat(5);
+    };
+    let errors = [median, p99, largest, below].map(|error| format!("<td>{error:.1e}</td>")).concat();
+    format!("{errors}<td>{bad}</td>")
+}
+
+/// What the pass is held to.
+fn numbers(html: &mut String, numbers: &[Number]) {
+    if numbers.is_empty() {
+        return;
+    }
+    html.push_str("<h2>numbers</h2><table><tr><th>what</th><th>asked for</th><th>measured</th><th></th></tr>");
+    for Number { what, asked, measured, holds } in numbers {
+        let verdict = if *holds { "holds" } else { "<b>missed</b>" };
+        let cells = [what, asked, measured].map(|text| format!("<td>{}</td>", escape(text))).concat();
+        let _ = write!(html, "<tr>{cells}<td>{verdict}</td></tr>");
+    }
+    html.push_str("</table>");
 }
 
 fn comparisons(html: &mut String, curve: &Curve) {

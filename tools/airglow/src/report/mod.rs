@@ -1,6 +1,8 @@
 //! Measurements as data, and what a reader makes of them: tables, plots, fronts and comparisons.
 
 pub mod date;
+#[cfg(feature = "fog")]
+pub mod fog;
 pub mod html;
 pub mod interleave;
 pub mod labels;
@@ -12,4 +14,6 @@ pub mod ranking;
 pub mod relight;
 pub mod sweep;
 pub mod table;
+#[cfg(feature = "fog")]
+pub mod timed_plan;
 pub mod write;

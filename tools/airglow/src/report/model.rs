@@ -20,6 +20,22 @@ pub struct Report {
     pub remarks: Vec<String>,
     /// One curve for each knob.
     pub curves: Vec<Curve>,
+    /// What the pass is held to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub numbers: Vec<Number>,
+}
+
+/// A number that a pass is held to.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Number {
+    /// What was measured.
+    pub what: String,
+    /// What is asked for, in words.
+    pub asked: String,
+    /// What it is, in words.
+    pub measured: String,
+    /// Whether that is as asked.
+    pub holds: bool,
 }
 
 /// The device and its driver.
@@ -78,6 +94,24 @@ pub struct Point {
     pub counts: Counts,
     /// Errors against the three truths.
     pub error: Errors,
+    /// Errors over many inputs, where they were taken.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distribution: Option<Distribution>,
+}
+
+/// Errors over many inputs; relative, unless the curve's norm says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Distribution {
+    /// Half of them are below.
+    pub median: f64,
+    /// 99 % of them are below.
+    pub p99: f64,
+    /// The largest.
+    pub largest: f64,
+    /// The largest absolute one where the truth is too small for a relative one.
+    pub below: f64,
+    /// Results that are not finite or negative; they are in none of the others.
+    pub bad: u64,
 }
 
 /// Work of one run of the pass, the same on every machine.
@@ -230,6 +264,7 @@ pub mod testing {
             memory: (milliseconds * 1000.0) as u64,
             counts: Counts { bytes: 7, invocations: 5, dispatches: 1, ..Counts::default() },
             error: Errors { arithmetic: Some(1e-7), setting: Some(error), ..Errors::default() },
+            distribution: None,
         };
         let curve = Curve {
             knob: "resolution".to_owned(),
@@ -254,6 +289,7 @@ pub mod testing {
             workload: "nothing".to_owned(),
             remarks: Vec::new(),
             curves: vec![curve],
+            numbers: Vec::new(),
         }
     }
 }

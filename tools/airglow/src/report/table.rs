@@ -3,7 +3,7 @@
 use super::model::{Point, Report};
 use crate::failure::{Failure, Outcome};
 
-const HEADER: [&str; 24] = [
+const HEADER: [&str; 29] = [
     "pass",
     "device",
     "driver",
@@ -27,6 +27,11 @@ const HEADER: [&str; 24] = [
     "error_setting",
     "error_model",
     "error_model_p95",
+    "random_median",
+    "random_p99",
+    "random_largest",
+    "random_below",
+    "random_bad",
     "norm",
 ];
 
@@ -79,5 +84,10 @@ fn numbers(point: &Point) -> Vec<String> {
         real(point.error.setting),
         real(point.error.model),
         real(point.error.model_p95),
+        real(point.distribution.map(|d| d.median)),
+        real(point.distribution.map(|d| d.p99)),
+        real(point.distribution.map(|d| d.largest)),
+        real(point.distribution.map(|d| d.below)),
+        count(point.distribution.map(|d| d.bad)),
     ]
 }

@@ -160,6 +160,7 @@ mod tests {
             memory: 1,
             counts: Default::default(),
             error: Errors { model: Some(error), ..Errors::default() },
+            distribution: None,
         }
     }
 

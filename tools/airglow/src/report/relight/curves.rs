@@ -204,6 +204,7 @@ fn point(timed: Timed, error: Errors) -> Point {
         memory: timed.memory,
         counts: timed.counts,
         error,
+        distribution: None,
     }
 }
 

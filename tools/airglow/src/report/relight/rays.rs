@@ -69,6 +69,7 @@ impl Measurement<'_> {
                     model: Some(truth.error(&colours)?),
                     model_p95: Some(truth.error_p95(&colours)?),
                 },
+                distribution: None,
             })
         };
         self.workload.bakes.iter().map(one).collect()
