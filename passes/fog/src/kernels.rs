@@ -46,6 +46,7 @@ static SURFACE_ROWS: [&[u8]; 2] = [
 ];
 static BACKGROUND_PARTS: &[u8] = include_bytes!("../../../shaders/spirv/fog/background_parts.spv").as_slice();
 static BACKGROUND: &[u8] = include_bytes!("../../../shaders/spirv/fog/background.spv").as_slice();
+static COMPLETE_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/complete_rows.spv").as_slice();
 static SPREAD_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/spread_rows.spv").as_slice();
 
 /// Bindings of the airlight pass: the frame, the surfaces' radiance, their depth.
@@ -106,6 +107,11 @@ pub(crate) fn lobe_table(preset: Preset) -> Vec<u32> {
 /// The glow through lobes of rows of parameters.
 pub(crate) fn surface_rows(preset: Preset) -> Vec<u32> {
     words(SURFACE_ROWS[preset as usize])
+}
+
+/// The complete model of rows of parameters.
+pub(crate) fn complete_rows() -> Vec<u32> {
+    words(COMPLETE_ROWS)
 }
 
 /// The point spread function of rows of parameters.
