@@ -8,7 +8,7 @@ use airglow_gpu::{AdoptInfo, Context, Requirements};
 use airglow_graph::{Access, State};
 use airglow_tests::compare::assert_close;
 use airglow_tests::device::open;
-use airglow_tests::shim::{ACTIONS, Call, STATE, Shim, watch};
+use airglow_tests::shim::{ACTIONS, Call, STATE, watch};
 use airglow_tests::workload::{Workload, reference};
 use std::collections::BTreeSet;
 

@@ -94,6 +94,51 @@ typedef uint32_t AirglowStatus;
 #endif // __cplusplus
 
 /**
+ * One of the six directions along a host's axes.
+ */
+enum AirglowAxis
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * As airglow has it: +X right, +Y up, -Z forward.
+   */
+  AIRGLOW_AXIS_DEFAULT = 0,
+  /**
+   * +X.
+   */
+  AIRGLOW_AXIS_PLUS_X = 1,
+  /**
+   * -X.
+   */
+  AIRGLOW_AXIS_MINUS_X = 2,
+  /**
+   * +Y.
+   */
+  AIRGLOW_AXIS_PLUS_Y = 3,
+  /**
+   * -Y.
+   */
+  AIRGLOW_AXIS_MINUS_Y = 4,
+  /**
+   * +Z.
+   */
+  AIRGLOW_AXIS_PLUS_Z = 5,
+  /**
+   * -Z.
+   */
+  AIRGLOW_AXIS_MINUS_Z = 6,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowAxis AirglowAxis;
+#else
+typedef uint32_t AirglowAxis;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * What visibility is below the tangent plane of a vertex, where no ray is traced.
  */
 enum AirglowBelowHorizon
@@ -970,6 +1015,78 @@ typedef struct AirglowRelightSettings {
 } AirglowRelightSettings;
 
 /**
+ * A host's conventions: axes, units, winding, depth, exposure. All zero is airglow's own: metres, right-handed, +Y up,
+ * -Z forward, counter-clockwise fronts.
+ */
+typedef struct AirglowWorld {
+  /**
+   * `sizeof(AirglowWorld)`.
+   */
+  uint32_t struct_size;
+  /**
+   * What points to the right of an upright viewer who looks forward, an `AirglowAxis`. The three lie along different
+   * lines; which hand they are follows from them.
+   */
+  uint32_t right;
+  /**
+   * What points up, an `AirglowAxis`.
+   */
+  uint32_t up;
+  /**
+   * What points forward, an `AirglowAxis`.
+   */
+  uint32_t forward;
+  /**
+   * 1: front faces wind clockwise in the picture.
+   */
+  uint32_t front_face_clockwise;
+  /**
+   * 1: green of normal maps points down the texture, along v.
+   */
+  uint32_t normal_map_green_down;
+  /**
+   * 1: depth is 1 near and 0 far.
+   */
+  uint32_t depth_reversed;
+  /**
+   * 1: the projection is orthographic.
+   */
+  uint32_t depth_orthographic;
+  /**
+   * Length of the unit in metres; 0 is 1.
+   */
+  double metres_per_unit;
+  /**
+   * View distance of the near plane, in units; 0 is 0.1.
+   */
+  double depth_near;
+  /**
+   * View distance of the far plane, in units; infinity for an infinite perspective, 0 is 1000.
+   */
+  double depth_far;
+  /**
+   * Pixels by which the projection shifts the picture, right and down.
+   */
+  double jitter[2];
+  /**
+   * What colours are multiplied with before they are stored; 0 is 1. Radiance that comes in is not multiplied yet.
+   */
+  double pre_exposure;
+  /**
+   * Where the zero of the positions that the host gives lies in its world, in its axes and units.
+   */
+  double origin[3];
+  /**
+   * Views of a frame; 0 is 1.
+   */
+  uint32_t views;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+} AirglowWorld;
+
+/**
  * One use of one resource by one step. Elements of arrays never grow; names live as long as the prepared frame.
  */
 typedef struct AirglowAccess {
@@ -1393,6 +1510,18 @@ AirglowStatus airglow_relight_new(const struct AirglowContext *context,
                                   struct AirglowError *error);
 
 /**
+ * States the host's world: in its axes rotations of light and instances, and light as SH RGB, come in with frames
+ * prepared from now on, and results are multiplied with its pre-exposure. Before, it is airglow's own. Object space, and
+ * so the bake, is in any axes. On an error the world stays.
+ *
+ * The caller promises:
+ * `world` points at as many bytes as it says.
+ */
+AirglowStatus airglow_relight_set_world(const struct AirglowRelight *relight,
+                                        const struct AirglowWorld *world,
+                                        struct AirglowError *error);
+
+/**
  * Drops the pass; frames that were prepared stay usable. Null is nothing.
  *
  * The caller promises:
@@ -1543,6 +1672,9 @@ void airglow_prepared_drop(struct AirglowPrepared *prepared);
  * `airglow_prepared_make_scratch` made it. State of the command buffer that is changed: pipelines, descriptor set 0 and
  * push constants of both bind points, viewport 0, scissor 0. Rendering and labels are closed again.
  *
+ * The last few sets of bindings are kept: recorded again with one of them, a frame allocates nothing on the heap. Images
+ * that were bound stay until `airglow_prepared_forget` or until the prepared frame is dropped.
+ *
  * The caller promises:
  * `command_buffer` is a primary `VkCommandBuffer` of a pool of the adopted queue family, recording, outside rendering,
  * used by no one else meanwhile; it is submitted at most once, in the context's frame. Bindings describe live resources
@@ -1553,6 +1685,14 @@ AirglowStatus airglow_prepared_record(const struct AirglowPrepared *prepared,
                                       const struct AirglowBinding *bindings,
                                       size_t binding_count,
                                       struct AirglowError *error);
+
+/**
+ * Forgets the resources that the frame was recorded with: before the host destroys an image among them.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_prepared_forget(const struct AirglowPrepared *prepared, struct AirglowError *error);
 
 /**
  * Says the bytes of a mesh of `vertex_count` vertices and of its results.
@@ -1634,6 +1774,14 @@ AirglowStatus airglow_requirements_patch(struct AirglowRequirements *requirement
                                          void **p_next,
                                          void *enabled_features,
                                          struct AirglowError *error);
+
+/**
+ * Refuses what no host can mean, with the reason; passes refuse it, too.
+ *
+ * The caller promises:
+ * `world` points at as many bytes as it says.
+ */
+AirglowStatus airglow_world_check(const struct AirglowWorld *world, struct AirglowError *error);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,4 +1,5 @@
 //! The conformance kit for hosts in C and C++: the library's passes inside the host's own device, checked there.
+#![allow(dead_code, unused_imports, unused_macros, reason = "helpers of passes, of which there may be none")]
 #![allow(
     clippy::unwrap_used,
     clippy::panic,

@@ -18,6 +18,7 @@ pub mod relight;
 pub mod requirements;
 pub mod status;
 pub mod text;
+pub mod world;
 
 /// The version of the library: major in the highest 10 bits, minor in the next 10, patch in the lowest 12.
 #[unsafe(no_mangle)]

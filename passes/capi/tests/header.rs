@@ -11,6 +11,7 @@ use airglow_capi::needs::*;
 use airglow_capi::physical::*;
 use airglow_capi::status::*;
 use airglow_capi::text::*;
+use airglow_capi::world::*;
 use common::{COMPILER, assert_sizes, compiler, run, scratch};
 
 #[test]
@@ -38,6 +39,7 @@ fn its_structures_measure_what_rust_s_do() {
         AirglowPassReached,
         AirglowPhysicalDevice,
         AirglowText,
+        AirglowWorld,
     ];
     assert_sizes("sizes.c", &sizes);
 }

@@ -26,9 +26,10 @@ use crate::relight::resources::AirglowResource;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::relight::{
     AirglowRelight, airglow_relight_add_mesh, airglow_relight_drop, airglow_relight_new,
-    airglow_relight_require, airglow_relight_set_environment,
+    airglow_relight_require, airglow_relight_set_environment, airglow_relight_set_world,
 };
 use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+use crate::world::{AirglowAxis, AirglowWorld};
 
 const WIDTH: u32 = 32;
 const HEIGHT: u32 = 16;
@@ -58,7 +59,11 @@ pub(crate) struct Both {
 }
 
 impl Both {
-    pub(crate) fn new(context: &Context, host: &HostDevice<'_>, method: u32, texels: bool) -> Self {
+    pub(crate) fn new(
+        context: &Context,
+        host: &HostDevice<'_>,
+        (method, texels, world): (u32, bool, Option<&AirglowWorld>),
+    ) -> Self {
         let settings = settings(method);
         let vectors = numbers(16 * VERTICES as usize, 0.7);
         let mut relight = Relight::new(context, settings.read().unwrap()).unwrap();
@@ -72,6 +77,10 @@ impl Both {
         let mut instance: AirglowRelightInstance = unsafe { zeroed() };
         let (name, values, mesh_number) = (c"mesh".as_ptr(), vectors.as_ptr(), &raw mut instance.mesh);
         call!(airglow_relight_add_mesh, through_c, name, VERTICES, values, vectors.len(), mesh_number);
+        if let Some(world) = world {
+            relight.set_world(world.read().unwrap()).unwrap();
+            call!(airglow_relight_set_world, through_c, world);
+        }
         if texels {
             call!(airglow_relight_set_environment, through_c, WIDTH, HEIGHT, sky().as_ptr().cast());
         }
@@ -223,9 +232,12 @@ pub(crate) fn requirements(settings: &AirglowRelightSettings) -> *mut AirglowReq
 pub(crate) const CHECKS: Checks = Checks {
     requirements: || asked(0).and(&asked(1)),
     checks: &[
-        (c"relight: compute, an environment in the host's image", |host| assert_lit(host, 0, false)),
-        (c"relight: compute, an environment as texels", |host| assert_lit(host, 0, true)),
-        (c"relight: fragment, an environment in the host's image", |host| assert_lit(host, 1, false)),
+        (c"relight: compute, an environment in the host's image", |host| assert_lit(host, (0, false, None))),
+        (c"relight: compute, an environment as texels", |host| assert_lit(host, (0, true, None))),
+        (c"relight: fragment, an environment in the host's image", |host| assert_lit(host, (1, false, None))),
+        (c"relight: a host with Z up, left-handed, exposed", |host| {
+            assert_lit(host, (0, false, Some(&z_up())))
+        }),
     ],
 };
 
@@ -233,8 +245,23 @@ fn asked(method: u32) -> Requirements {
     Relight::requirements(&settings(method).read().unwrap())
 }
 
-fn assert_lit(host: &HostDevice<'_>, method: u32, texels: bool) {
-    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, method, texels);
+/// A host that differs from airglow in all that the pass reads.
+pub(crate) fn z_up() -> AirglowWorld {
+    AirglowWorld {
+        struct_size: size_of::<AirglowWorld>() as u32,
+        right: AirglowAxis::PlusY as u32,
+        up: AirglowAxis::PlusZ as u32,
+        forward: AirglowAxis::PlusX as u32,
+        metres_per_unit: 0.01,
+        pre_exposure: 0.37,
+        // SAFETY: zero bytes are a valid world.
+        ..unsafe { zeroed() }
+    }
+}
+
+fn assert_lit(host: &HostDevice<'_>, case: (u32, bool, Option<&AirglowWorld>)) {
+    let method = case.0;
+    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, case);
     // SAFETY: whoever runs the kit vouches for the device and its queue.
     let outputs = unsafe { conform_on(host, &asked(method), &Options::default(), make) };
     assert_written(&outputs);

@@ -25,6 +25,7 @@ use crate::context::AirglowContext;
 use crate::input::{array, exclusive, shared, store, string, take, versioned};
 use crate::requirements::AirglowRequirements;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
+use crate::world::AirglowWorld;
 use settings::AirglowRelightSettings;
 use sky::Sky;
 
@@ -108,6 +109,27 @@ pub unsafe extern "C" fn airglow_relight_new(
                 let state = State { relight, meshes: BTreeMap::new(), next: 1, sky: None };
                 Ok(Box::into_raw(Box::new(AirglowRelight { context, state: Mutex::new(state) })))
             })
+        })
+    }
+}
+
+/// States the host's world: in its axes rotations of light and instances, and light as SH RGB, come in with frames
+/// prepared from now on, and results are multiplied with its pre-exposure. Before, it is airglow's own. Object space, and
+/// so the bake, is in any axes. On an error the world stays.
+///
+/// # Safety
+/// `world` points at as many bytes as it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_relight_set_world(
+    relight: *const AirglowRelight,
+    world: *const AirglowWorld,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let world = versioned(world, "world")?.read()?;
+            Ok(shared(relight, "relight")?.state().relight.set_world(world)?)
         })
     }
 }

@@ -1,7 +1,7 @@
 //! A frame as data, made from what the host says of it.
 
 use std::ffi::CString;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{Context, Label, Location};
@@ -9,6 +9,7 @@ use airglow_graph::{BufferDesc, ImageDesc, ResourceDesc};
 use airglow_relight::{Bindings, Need, Orientation, Prepared, Resource, Settings};
 
 use super::frame::{AirglowRelightFrame, AirglowRelightInstance, orientation, quaternion, read};
+use super::record::Kept;
 use super::sky::Sky;
 use super::{AirglowRelight, misuse};
 use crate::input::{array, exclusive, shared, store, take, versioned};
@@ -24,6 +25,8 @@ pub struct AirglowPrepared {
     pub(super) sky: Option<Arc<Sky>>,
     /// What the library made for the frame.
     pub(super) scratch: Bindings,
+    /// What it was recorded with.
+    pub(super) kept: Mutex<Kept>,
     /// Names that the host was given pointers to, by resource and by stage.
     pub(super) names: Names,
 }
@@ -53,7 +56,8 @@ impl AirglowPrepared {
         sky: Option<Arc<Sky>>,
     ) -> Self {
         let (names, scratch) = (Names::new(&prepared), Bindings::default());
-        Self { context, prepared, coefficients: settings.coefficients() as u64, sky, scratch, names }
+        let coefficients = settings.coefficients() as u64;
+        Self { context, prepared, coefficients, sky, scratch, kept: Mutex::default(), names }
     }
 }
 
@@ -120,6 +124,7 @@ pub unsafe extern "C" fn airglow_prepared_make_scratch(
                 }
             }
             frame.scratch = made;
+            frame.kept().sets.clear();
             Ok(())
         })
     }

@@ -1,9 +1,11 @@
 //! The commands of a prepared frame, in the host's own command buffer.
 
+use std::sync::{MutexGuard, PoisonError};
+
 use airglow_gpu::ash::{vk, vk::Handle};
 use airglow_gpu::{Label, Recorder};
 use airglow_graph::{BufferDesc, ImageDesc};
-use airglow_relight::{Need, Resource};
+use airglow_relight::{Bindings, Need, Resource};
 
 use super::misuse;
 use super::prepared::AirglowPrepared;
@@ -13,7 +15,7 @@ use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 
 /// A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
 #[repr(C)]
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct AirglowBinding {
     /// An `AirglowResource`.
     pub resource: u32,
@@ -44,6 +46,9 @@ pub struct AirglowBinding {
 /// `airglow_prepared_make_scratch` made it. State of the command buffer that is changed: pipelines, descriptor set 0 and
 /// push constants of both bind points, viewport 0, scissor 0. Rendering and labels are closed again.
 ///
+/// The last few sets of bindings are kept: recorded again with one of them, a frame allocates nothing on the heap. Images
+/// that were bound stay until `airglow_prepared_forget` or until the prepared frame is dropped.
+///
 /// # Safety
 /// `command_buffer` is a primary `VkCommandBuffer` of a pool of the adopted queue family, recording, outside rendering,
 /// used by no one else meanwhile; it is submitted at most once, in the context's frame. Bindings describe live resources
@@ -63,43 +68,113 @@ pub unsafe extern "C" fn airglow_prepared_record(
             if command_buffer == 0 {
                 return Err(Failure::argument("command_buffer", "it is null"));
             }
-            let mut bound = frame.scratch.clone();
-            for binding in array(bindings, binding_count, "bindings")? {
-                let resource = frame.wanted(binding)?;
-                let name = resource.to_string();
-                let label = Label::new("host", &name);
-                match (binding.buffer, binding.image) {
-                    (0, image) if image != 0 => {
-                        let [width, height] = binding.extent;
-                        let desc = ImageDesc {
-                            usage: vk::ImageUsageFlags::from_raw(binding.usage),
-                            mips: binding.mips.max(1),
-                            ..ImageDesc::new_2d(width, height, vk::Format::from_raw(binding.format as i32))
-                        };
-                        let image = frame.context.import_image(vk::Image::from_raw(image), label, &desc);
-                        bound.images.insert(resource, image.view(airglow_gpu::ViewDesc::single(0, 0))?);
-                    }
-                    (buffer, 0) if buffer != 0 => {
-                        let usage = vk::BufferUsageFlags::from_raw(binding.usage);
-                        let desc = BufferDesc { size: binding.size, usage };
-                        let buffer = frame.context.import_buffer(vk::Buffer::from_raw(buffer), label, &desc);
-                        let rest = binding.size.saturating_sub(binding.offset);
-                        bound.buffers.insert(resource, buffer.slice(binding.offset, rest)?);
-                    }
-                    _ => return Err(misuse(name, "give a buffer or an image, not both or none")),
-                }
-            }
-            let mut recorder = Recorder::new(&frame.context, vk::CommandBuffer::from_raw(command_buffer));
+            let given = array(bindings, binding_count, "bindings")?;
+            let mut kept = frame.kept();
+            let bound = kept.set(given, || frame.import(given))?;
+            let commands = vk::CommandBuffer::from_raw(command_buffer);
+            let mut recorder = Recorder::new(&frame.context, commands);
             let needed = |wanted| frame.prepared.needs.iter().any(|(resource, _)| *resource == wanted);
             if let Some(sky) = frame.sky.as_ref().filter(|_| needed(Resource::Environment)) {
                 bound.images.insert(Resource::Environment, sky.bind(&mut recorder)?);
             }
-            Ok(frame.prepared.record(&mut recorder, &bound)?)
+            Ok(frame.prepared.record(&mut recorder, bound)?)
         })
     }
 }
 
+/// Forgets the resources that the frame was recorded with: before the host destroys an image among them.
+///
+/// # Safety
+/// Nothing beyond the pointers being valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_prepared_forget(
+    prepared: *const AirglowPrepared,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            shared(prepared, "prepared")?.kept().sets.clear();
+            Ok(())
+        })
+    }
+}
+
+/// Sets of bindings that are kept: as many as a host has frames in flight, and some.
+const MOST_KEPT: usize = 8;
+
+/// What a frame was recorded with, the last set at the end.
+#[derive(Default)]
+pub(super) struct Kept {
+    pub sets: Vec<(Vec<AirglowBinding>, Bindings)>,
+}
+
+impl Kept {
+    /// The set for `given`, made by `import` where it is not here.
+    fn set(
+        &mut self,
+        given: &[AirglowBinding],
+        import: impl FnOnce() -> Result<Bindings, Failure>,
+    ) -> Result<&mut Bindings, Failure> {
+        match self.sets.iter().position(|(known, _)| known == given) {
+            Some(place) => self.sets[place..].rotate_left(1),
+            None => {
+                let bound = import()?;
+                if self.sets.len() == MOST_KEPT {
+                    self.sets.remove(0);
+                }
+                self.sets.push((given.to_vec(), bound));
+            }
+        }
+        let problem = "no set of bindings is kept";
+        self.sets.last_mut().map(|(_, bound)| bound).ok_or_else(|| Failure::argument("bindings", problem))
+    }
+}
+
 impl AirglowPrepared {
+    pub(super) fn kept(&self) -> MutexGuard<'_, Kept> {
+        // A poisoned lock means a panic that was reported as a defect; the data is whole.
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The scratch, and the host's resources.
+    ///
+    /// # Safety
+    /// As [`airglow_prepared_record`].
+    unsafe fn import(&self, given: &[AirglowBinding]) -> Result<Bindings, Failure> {
+        let mut bound = self.scratch.clone();
+        for binding in given {
+            let resource = self.wanted(binding)?;
+            let name = resource.to_string();
+            let label = Label::new("host", &name);
+            match (binding.buffer, binding.image) {
+                (0, image) if image != 0 => {
+                    let [width, height] = binding.extent;
+                    let desc = ImageDesc {
+                        usage: vk::ImageUsageFlags::from_raw(binding.usage),
+                        mips: binding.mips.max(1),
+                        ..ImageDesc::new_2d(width, height, vk::Format::from_raw(binding.format as i32))
+                    };
+                    // SAFETY: the caller vouches for the image.
+                    let image =
+                        unsafe { self.context.import_image(vk::Image::from_raw(image), label, &desc) };
+                    bound.images.insert(resource, image.view(airglow_gpu::ViewDesc::single(0, 0))?);
+                }
+                (buffer, 0) if buffer != 0 => {
+                    let usage = vk::BufferUsageFlags::from_raw(binding.usage);
+                    let desc = BufferDesc { size: binding.size, usage };
+                    // SAFETY: the caller vouches for the buffer.
+                    let buffer =
+                        unsafe { self.context.import_buffer(vk::Buffer::from_raw(buffer), label, &desc) };
+                    let rest = binding.size.saturating_sub(binding.offset);
+                    bound.buffers.insert(resource, buffer.slice(binding.offset, rest)?);
+                }
+                _ => return Err(misuse(name, "give a buffer or an image, not both or none")),
+            }
+        }
+        Ok(bound)
+    }
+
     /// The resource that a binding is for.
     fn wanted(&self, binding: &AirglowBinding) -> Result<Resource, Failure> {
         let (wanted, index) = (binding.resource, binding.index);

@@ -5,18 +5,27 @@ use airglow_relight::Relight;
 use airglow_tests::conformance::{HostDevice, Outputs, conform_adopting};
 
 use super::settings;
-use crate::relight::conformance::{Both, assert_written};
+use crate::relight::conformance::{Both, assert_written, z_up};
+use crate::world::AirglowWorld;
 
-fn outputs(method: u32, texels: bool) -> Outputs {
-    let requirements = Relight::requirements(&settings(method).read().unwrap());
-    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, method, texels);
+fn outputs(case: (u32, bool, Option<&AirglowWorld>)) -> Outputs {
+    let requirements = Relight::requirements(&settings(case.0).read().unwrap());
+    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, case);
     conform_adopting(make, &requirements, &Options::default())
 }
 
 #[test]
 fn rust_and_c_give_the_same_bits() {
-    let by_image = outputs(0, false);
+    let by_image = outputs((0, false, None));
     assert_written(&by_image);
-    assert_eq!(outputs(0, true), by_image, "texels of the host give what its image gives");
-    assert_eq!(outputs(1, false), by_image, "the fragment method gives what compute gives");
+    assert_eq!(outputs((0, true, None)), by_image, "texels of the host give what its image gives");
+    assert_eq!(outputs((1, false, None)), by_image, "the fragment method gives what compute gives");
+}
+
+#[test]
+fn a_host_of_another_world_gets_the_bits_of_the_rust_road() {
+    let world = z_up();
+    let turned = outputs((0, false, Some(&world)));
+    assert_written(&turned);
+    assert_ne!(turned, outputs((0, false, None)), "the world changes what comes out");
 }

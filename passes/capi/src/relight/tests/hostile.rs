@@ -17,12 +17,13 @@ use crate::relight::frame::AirglowRelightFrame;
 use crate::relight::lists::*;
 use crate::relight::plan::airglow_relight_plan;
 use crate::relight::prepared::*;
-use crate::relight::record::airglow_prepared_record;
+use crate::relight::record::{airglow_prepared_forget, airglow_prepared_record};
 use crate::relight::settings::{AirglowRelightBytes, AirglowRelightSettings, airglow_relight_bytes};
 use crate::relight::*;
 use crate::requirements::*;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 use crate::text::AirglowText;
+use crate::world::airglow_world_check;
 use airglow_tests::conformance::HostDevice;
 
 #[test]
@@ -46,6 +47,9 @@ fn null_is_refused_everywhere_and_dropping_it_is_nothing() {
     refused!(InvalidArgument, airglow_relight_prepare, null(), null(), null_mut());
     refused!(InvalidArgument, airglow_relight_plan, null(), null(), 0, null_mut());
     refused!(InvalidArgument, airglow_prepared_make_scratch, null_mut());
+    refused!(InvalidArgument, airglow_prepared_forget, null());
+    refused!(InvalidArgument, airglow_relight_set_world, null(), null());
+    refused!(InvalidArgument, airglow_world_check, null());
     refused!(InvalidArgument, airglow_prepared_turn, null(), null(), null(), 0);
     refused!(InvalidArgument, airglow_prepared_accesses, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_prepared_resources, null(), null_mut(), null_mut());

@@ -2,6 +2,7 @@
 
 mod conformance;
 mod frame;
+mod heap;
 mod hostile;
 mod memory;
 
