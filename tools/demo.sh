@@ -43,6 +43,10 @@ say "the device"
 say "baking and drawing $scene"
 "$airglow" render "$scene" "${device[@]}" -o out/demo.png --stat out/demo.json
 "$airglow" render "$scene" "${device[@]}" --without relight --split -o out/demo-split.png --quiet > /dev/null
+street=assets/scenes/street.toml
+say "drawing $street"
+"$airglow" render "$street" "${device[@]}" -o out/street.png --stat out/street.json
+"$airglow" render "$street" "${device[@]}" --without fog --split --frames 1 -o out/street-split.png --quiet > /dev/null
 say "the plan"
 "$airglow" plan "$scene" "${device[@]}" | tee out/plan.txt
 say "measuring error against time"
@@ -50,6 +54,7 @@ say "measuring error against time"
 
 say "done in $SECONDS s"
 echo "picture          $PWD/out/demo.png (out/demo-split.png: left half without the pass)"
-echo "timings          $PWD/out/demo.json"
+echo "picture          $PWD/out/street.png (out/street-split.png: left half in clear air)"
+echo "timings          $PWD/out/demo.json, $PWD/out/street.json"
 echo "plan             $PWD/out/plan.txt"
 find "$PWD/out/report" -name '*.html' -printf 'error/time plot  %p\n'
