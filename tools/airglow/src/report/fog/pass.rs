@@ -78,7 +78,7 @@ impl Measurement<'_> {
         let mut clear = View { lights: grid(64), ..picture.view.clone() };
         clear.medium.extinction = [0.0; 3];
         shown.push(("64 lights, no extinction".to_owned(), self.show(&settings, picture, clear)?));
-        let points = self.timed("lights", shown, |_| Ok(Errors::default()))?;
+        let points = self.timed("lights", shown, |_, _| Ok(Errors::default()))?;
         Ok(Curve {
             knob: "lights".to_owned(),
             question: "Is the cost linear in the lights, and is there none without a medium?".to_owned(),
@@ -97,19 +97,29 @@ impl Measurement<'_> {
         picture: &Picture,
         settings: &[(String, Settings)],
     ) -> Outcome<Vec<Point>> {
+        let exact = |preset| match preset {
+            Preset::Default => picture.taps(6, 8.0),
+            Preset::Reference => picture.taps(16, 15.0),
+        };
+        let mut exacts = Vec::new();
         let mut shown = Vec::new();
         for (name, settings) in settings {
+            exacts.push(exact(settings.preset)?);
             let settings = Settings { phase: PhaseKind::Isotropic, ..*settings };
             shown.push((name.clone(), self.show(&settings, picture, picture.view.clone())?));
         }
-        self.timed(what, shown, |target| {
+        self.timed(what, shown, |place, target| {
             let copy = self.device.run(|recorder| {
                 recorder.transition(target, Access::ColorAttachmentWrite, Access::TransferSource)?;
                 recorder.read_back_image(&target.full_view()?)
             });
             let texels: Vec<[f32; 4]> = copy.and_then(|copy| copy.read()).map_err(Failure::work)?;
             let airlight: Vec<[f32; 3]> = texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
-            Ok(Errors { setting: Some(picture.errors(&airlight)?.largest), ..Errors::default() })
+            let setting = Some(picture.errors(&airlight)?.largest);
+            // What a bound leaves out is an error of the setting.
+            let all = settings[place].1.bound == 0.0;
+            let arithmetic = all.then(|| picture.difference(&airlight, &exacts[place]));
+            Ok(Errors { arithmetic, setting, ..Errors::default() })
         })
     }
 
@@ -117,7 +127,7 @@ impl Measurement<'_> {
         &self,
         what: &str,
         shown: Vec<(String, Shown)>,
-        error: impl Fn(&Image) -> Outcome<Errors>,
+        error: impl Fn(usize, &Image) -> Outcome<Errors>,
     ) -> Outcome<Vec<Point>> {
         let (names, shown): (Vec<_>, Vec<_>) = shown.into_iter().unzip();
         let (mut plans, targets): (Vec<_>, Vec<_>) =
@@ -125,11 +135,12 @@ impl Measurement<'_> {
         let times = timed_plan::measure(self.device, what, &mut plans, ROUNDS, self.output)?;
         let bytes = 36 * u64::from(SIDE * SIDE);
         let all = names.into_iter().zip(times).zip(plans.iter().zip(&targets));
-        all.map(|((setting, milliseconds), (plan, target))| {
-            let (counts, error) = (plan.counts(bytes), error(target)?);
-            Ok(Point { setting, milliseconds, memory: 0, counts, error, distribution: None })
-        })
-        .collect()
+        all.enumerate()
+            .map(|(place, ((setting, milliseconds), (plan, target)))| {
+                let (counts, error) = (plan.counts(bytes), error(place, target)?);
+                Ok(Point { setting, milliseconds, memory: 0, counts, error, distribution: None })
+            })
+            .collect()
     }
 
     /// A frame of the pass over black surfaces.
@@ -178,7 +189,8 @@ impl Measurement<'_> {
 }
 
 const NORM: &str = "setting: largest error against quadrature in f64, in half 8-bit steps of the exposed pixel over \
-                    black surfaces, where steps are finest; below 1 it is not seen";
+                    black surfaces, where steps are finest; below 1 it is not seen. arithmetic: the same, against \
+                    the same taps in f64, where no bound leaves lights out";
 
 /// Lamps in a row into the depth, all different.
 fn grid(count: u32) -> Vec<Light> {

@@ -6,6 +6,7 @@ use airglow::fog::reference::airlight::{Sight, airlight};
 use airglow::fog::rivals::Row;
 use airglow::fog::{Light, Phase, View};
 use airglow_gpu::ash::vk;
+use airglow_math::quadrature::gauss_legendre;
 use airglow_math::statistics::percentiles;
 use airglow_scene::{Exposure, Scene};
 
@@ -156,6 +157,31 @@ impl Picture {
         Ok(Distribution { median: at[0], p99: at[1], largest: at[2], below: 0.0, bad })
     }
 
+    /// The taps' own airlight at the pixels with a truth, in f64: what the device would give without rounding.
+    pub fn taps(&self, count: usize, cut: f64) -> Outcome<Vec<[f64; 3]>> {
+        let rule = gauss_legendre(count).map_err(Failure::work)?;
+        let pixels = (SIDE * SIDE) as usize;
+        let at = |&(pixel, _): &(usize, [f64; 3])| {
+            let mut sum = [0.0; 3];
+            for row in self.rows[pixel..].iter().step_by(pixels) {
+                let integrals = taps_of(row, self.lengths[pixel], &rule, cut);
+                sum = [0, 1, 2]
+                    .map(|channel| sum[channel] + f64::from(row.weight[channel]) * integrals[channel]);
+            }
+            sum
+        };
+        Ok(self.truths.iter().map(at).collect())
+    }
+
+    /// Largest difference of a picture from airlight at the pixels with a truth, in half steps.
+    pub fn difference(&self, airlight: &[[f32; 3]], exact: &[[f64; 3]]) -> f64 {
+        let shown = |radiance: f64| 2.0 * 255.0 * encode(self.exposure * radiance);
+        let pairs = self.truths.iter().zip(exact).flat_map(|((pixel, _), exact)| {
+            [0, 1, 2].map(|channel| (f64::from(airlight[*pixel][channel]), exact[channel]))
+        });
+        pairs.map(|(value, exact)| (shown(value) - shown(exact)).abs()).fold(0.0, f64::max)
+    }
+
     /// The airlight times what brings it closest to the truths, channel by channel.
     pub fn fit(&self, airlight: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let factor = [0, 1, 2].map(|channel| {
@@ -185,6 +211,31 @@ impl Picture {
             self.view.lights.len()
         )
     }
+}
+
+/// `shaders/glsl/fog/taps.glsl` for one light and ray, without its guards against rounding.
+fn taps_of(row: &Row, length: f64, rule: &[(f64, f64)], cut: f64) -> [f64; 3] {
+    let [along, off] = [row.along, row.off].map(f64::from);
+    let extinction = row.extinction.map(f64::from);
+    let least = extinction.into_iter().fold(f64::INFINITY, f64::min);
+    let beyond = |ahead: f64| {
+        let distance = off.hypot(ahead);
+        if ahead >= 0.0 { ahead + distance } else { off * off / (distance - ahead) }
+    };
+    let start = beyond(-along);
+    let excess = if length.is_finite() { beyond(length - along) - start } else { f64::INFINITY };
+    let scale = 1.5 * off.hypot(start);
+    let ratio = excess.min(cut / least) / scale;
+    let end = 1.0 - 2.0 / (1.0 + (1.0 + 4.0 * ratio).sqrt());
+    let mut sum = [0.0; 3];
+    for (node, weight) in rule {
+        let y = end * 0.5 * (1.0 + node);
+        let excess = scale * y / (1.0 - y).powi(2);
+        let slope = scale * (1.0 + y) / (1.0 - y).powi(3);
+        let share = weight * end * slope / (off * off + (start + excess).powi(2));
+        sum = [0, 1, 2].map(|c| sum[c] + share * (-extinction[c] * (off.hypot(along) + excess)).exp());
+    }
+    sum
 }
 
 /// sRGB of a linear value, clamped.
