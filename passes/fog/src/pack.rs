@@ -1,5 +1,7 @@
 //! From the host's view to the bytes of `frame.glsl`.
 
+use std::f64::consts::PI;
+
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
@@ -138,15 +140,23 @@ fn pack_light(
         let strongest = scattering * medium.phase.most() * most(intensity) * (-extinction * distance).exp();
         reach(strongest, distance, world.distance(light.radius), settings.bound / world.pre_exposure)
     };
-    let least_along = match reached {
+    // The sphere of a range is seen within the angle whose sine is range / distance.
+    let range = light
+        .range
+        .map(|range| world.distance(range) / distance)
+        .filter(|sine| settings.bound > 0.0 && *sine < 1.0);
+    let angle = match reached {
         Reach::Nowhere => return None,
-        Reach::Within(angle) if !world.depth.orthographic => {
-            if !rays.come_within(position, angle) {
-                return None;
-            }
-            distance * angle.cos()
-        }
-        Reach::Within(_) | Reach::Everywhere => f64::from(f32::MIN),
+        Reach::Within(angle) => range.map_or(angle, |sine| angle.min(sine.asin())),
+        Reach::Everywhere => range.map_or(PI, f64::asin),
+    };
+    let least_along = if angle == PI || world.depth.orthographic {
+        f64::from(f32::MIN)
+    } else if rays.come_within(position, angle) {
+        // Rounded outwards by more than f32 loses.
+        distance * angle.cos() - 1e-6 * distance
+    } else {
+        return None;
     };
     let mut constants = LightConstants {
         position_radius: wide(position, world.distance(light.radius)),

@@ -203,9 +203,11 @@ fn a_light_out_of_reach_is_left_out_and_the_control_counts_it() {
     let lamp = view.lights[0];
     view.lights.push(Light { position: DVec3::new(0.0, 2.0, 900.0), ..lamp });
     view.lights.push(Light { intensity: [0.0; 3], ..lamp });
+    // Strong, but its range ends before the picture begins.
+    view.lights.push(Light { position: DVec3::new(0.0, 2.0, 20.0), range: Some(10.0), ..lamp });
     let frame = Frame { size: SIZE, surface: (), depth: (), target: None, view: view.clone() };
     let Prepared::Pass(pass) = fog.prepare(&frame).unwrap() else { panic!("there is a medium") };
-    assert_eq!((pass.control.counts().evaluated, pass.control.counts().left_out), (1, 2));
+    assert_eq!((pass.control.counts().evaluated, pass.control.counts().left_out), (1, 3));
     view.lights.truncate(1);
     assert_eq!(pass.control.set(&view).unwrap().left_out, 0);
     view.medium.extinction = [0.0; 3];

@@ -1,6 +1,6 @@
 //! A small step of a lamp or of the camera makes a small step of the picture.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
+#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
 use airglow_fog::{
     ACCESSES, Bindings, Camera, Fog, Frame, Light, Medium, Pass, Phase, Prepared, Settings, View,
