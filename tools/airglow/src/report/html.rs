@@ -162,7 +162,9 @@ fn numbers(html: &mut String, numbers: &[Number]) {
     if numbers.is_empty() {
         return;
     }
-    html.push_str("<h2>numbers</h2><table><tr><th>what</th><th>asked for</th><th>measured</th><th></th></tr>");
+    html.push_str(
+        "<h2>numbers</h2><table><tr><th>what</th><th>asked for</th><th>measured</th><th></th></tr>",
+    );
     for Number { what, asked, measured, holds } in numbers {
         let verdict = if *holds { "holds" } else { "<b>missed</b>" };
         let cells = [what, asked, measured].map(|text| format!("<td>{}</td>", escape(text))).concat();
