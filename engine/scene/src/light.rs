@@ -84,7 +84,7 @@ pub struct Medium {
     pub extinction: [f32; 3],
     /// Scattering albedo (scattering / extinction) in [0, 1].
     pub albedo: [f32; 3],
-    /// Mean cosine g of the Henyey-Greenstein phase function, in (-1, 1); 0 is isotropic.
+    /// Mean cosine g of the Henyey-Greenstein phase function, -0.999 to 0.999; 0 is isotropic.
     pub anisotropy: f32,
 }
 

@@ -127,7 +127,7 @@ fn faults_carry_line_and_column() {
         ("[quality]\nstorage = 'f64'", 2, "unknown variant `f64`"),
         ("[medium]\nextinction = 1\nvisibility = 3", 1, "either extinction (1/m) or visibility (m)"),
         ("[medium]\nvisibility = -3.0", 2, "-3 found, a positive number expected"),
-        ("[medium]\nvisibility = 3\nanisotropy = 1.0", 3, "above -1 and below 1"),
+        ("[medium]\nvisibility = 3\nanisotropy = 1.0", 3, "from -0.999 to 0.999"),
         ("[medium]\nextinction = [1, -1, 0]", 2, "three of them: [red, green, blue]"),
         ("[[emitter]]\ncenter = [0, nan, 0]\nradius = 1\nradiance = 1", 2, "a finite number expected"),
         ("[environment]\nfile = 'sky.exr'\nrotation = { yaw = 1, degrees = 2 }", 3, "a rotation is"),

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::values::{
-    Albedo, Cosine, Finite, Fraction, NotNegative, Positive, Rgb, Rotation, Scale, Vector, ViewDegrees,
+    Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Vector, ViewDegrees,
 };
 use crate::exposure::scale_of_ev;
 use crate::light::{Blocker, Emitter, Medium};
@@ -109,7 +109,7 @@ struct MediumFields {
     extinction: Option<Rgb>,
     visibility: Option<Positive>,
     albedo: Option<Albedo>,
-    anisotropy: Option<Cosine>,
+    anisotropy: Option<MeanCosine>,
 }
 
 impl TryFrom<MediumFields> for MediumTable {

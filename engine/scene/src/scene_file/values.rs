@@ -53,10 +53,10 @@ number!(
     |value| (0.0..=1.0).contains(&value)
 );
 number!(
-    /// Between -1 and 1.
-    Cosine,
-    "a number above -1 and below 1",
-    |value| value > -1.0 && value < 1.0
+    /// The mean cosine of a phase function: nearer to 1 it is a beam.
+    MeanCosine,
+    "a number from -0.999 to 0.999",
+    |value| (-0.999..=0.999).contains(&value)
 );
 number!(
     /// An angle of view.
