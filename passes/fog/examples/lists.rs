@@ -31,7 +31,8 @@ fn view(lights: Vec<Light>) -> View {
 
 /// Lamps along both sides of a street, ranges from 2 to 16 m.
 fn street(i: u32) -> Light {
-    let position = DVec3::new(if i.is_multiple_of(2) { -4.0 } else { 4.0 }, 4.0, -3.0 - 2.0 * f64::from(i / 2));
+    let position =
+        DVec3::new(if i.is_multiple_of(2) { -4.0 } else { 4.0 }, 4.0, -3.0 - 2.0 * f64::from(i / 2));
     let lamp = Light::point(position, [40.0, 30.0, 15.0]);
     Light { radius: 0.1, range: Some(f64::from(2_u32 << (i % 4))), ..lamp }
 }
