@@ -12,7 +12,7 @@ case "$*" in
     *) fail "usage: tools/test.sh [--rooms]" ;;
 esac
 say "checks of airglow: formatting, shaders, clippy, documentation, tests"
-echo "Expect about 15 minutes on two cores from a clean clone, about 4 when everything is built."
+echo "Expect about 15 minutes on two cores from a clean clone, about 3 when everything is built."
 
 require_toolchain
 for component in fmt clippy; do
