@@ -1,14 +1,18 @@
 //! The one error type of the room.
 
+use airglow_gpu::GpuError;
 use airglow_math::MathError;
 
 /// Why incident radiance could not be sampled or reconstructed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RadianceError {
     /// A spherical-harmonic order, face size or other argument of the mathematics below.
     #[error(transparent)]
     Math(#[from] MathError),
+    /// A refusal of the device layer.
+    #[error("radiance: {0}")]
+    Gpu(#[from] GpuError),
     /// A slice whose length does not fit the other arguments.
     #[error("{what} has {actual} elements but {expected} are needed: resize it")]
     Length {

@@ -5,6 +5,7 @@
 
 mod emitter;
 mod error;
+pub mod gpu;
 mod hierarchy;
 mod incident;
 mod octree;

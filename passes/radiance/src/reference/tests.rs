@@ -167,7 +167,7 @@ fn what_overlaps_is_refused() {
         radiance: DVec3::ONE,
     };
     let refused = triangles(4, DVec3::ZERO, &[lamp(1.0, 5.0), lamp(1.0, 0.0), lamp(2.0, 0.0)]);
-    assert_eq!(refused, Err(RadianceError::Overlap { first: 1, second: 2 }));
+    assert!(matches!(refused, Err(RadianceError::Overlap { first: 1, second: 2 })));
     assert!(triangles(4, DVec3::ZERO, &[lamp(1.0, 0.0), lamp(-1.0, 0.0), lamp(1.0, 1.0)]).is_ok());
 }
 
