@@ -197,21 +197,3 @@ fn host_structs_are_as_the_compiler_laid_them_out() {
     let row = rows.bindings[0].block.as_ref().unwrap().members[0].block.as_ref().unwrap();
     row.assert_matches(&host_layout!(RowConstants { light, half_vector, lobes }));
 }
-
-/// `cargo test -p airglow-normals --test gpu -- --ignored --nocapture` prints how long a large chain takes.
-#[test]
-#[ignore = "a measurement"]
-fn time_of_a_large_chain() {
-    let map = common::weave(1024);
-    for lobes in [1, 4] {
-        for iterations in [8, 16] {
-            let settings = FitSettings { lobes, iterations, ..Default::default() };
-            let begin = std::time::Instant::now();
-            with_bench(|bench| bench.build(&map, &settings, u64::MAX).unwrap());
-            println!(
-                "1024 x 1024, {lobes} lobes, {iterations} steps: {:.2} s",
-                begin.elapsed().as_secs_f64()
-            );
-        }
-    }
-}
