@@ -16,10 +16,10 @@
 #define GRADIENT_STRIDE (3 * COEFFICIENTS)
 
 // The samples that one dispatch takes: `count` of them from `first` on. The first three words are the arguments of an
-// indirect dispatch: a workgroup for each face of each sample.
+// indirect dispatch: a workgroup for each sample.
 struct Batch {
-    uint faces;
     uint count;
+    uint height;
     uint depth;
     uint first;
 };

@@ -6,14 +6,14 @@ use glam::{DMat3, DVec3};
 use crate::{Incident, RadianceError, Triangle};
 
 /// The samples that one dispatch takes: `count` of them from `first` on. The first three words are the arguments of an
-/// indirect dispatch, a workgroup for each face of each sample, so that kernels may decide where to sample next.
+/// indirect dispatch, a workgroup for each sample, so that kernels may decide where to sample next.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Batch {
-    /// Faces of a cube: 6.
-    pub faces: u32,
     /// Number of samples; 0 takes none.
     pub count: u32,
+    /// 1.
+    pub height: u32,
     /// 1.
     pub depth: u32,
     /// The first sample, in points and lights.
@@ -24,7 +24,7 @@ impl Batch {
     /// `count` samples from `first` on.
     #[must_use]
     pub const fn new(first: u32, count: u32) -> Self {
-        Self { faces: 6, count, depth: 1, first }
+        Self { count, height: 1, depth: 1, first }
     }
 }
 
