@@ -11,8 +11,8 @@ use std::time::Instant;
 use airglow_bake::{Mesh, unshadowed};
 use airglow_radiance::reference::Cube;
 use airglow_radiance::{
-    Hierarchy, Incident, Oracle, RadianceError, Reconstruction, Refined, Settings, Triangle, Weights, refine,
-    rivals,
+    Glow, Hierarchy, Incident, Oracle, RadianceError, Reconstruction, Refined, Settings, Triangle, Weights,
+    refine, rivals,
 };
 use glam::DVec3;
 
@@ -109,7 +109,7 @@ impl Case {
     }
 
     fn refine(&self, settings: &Settings) -> Result<Refined, RadianceError> {
-        refine(&self.tree, settings, &mut |points| self.sample(points))
+        refine(&self.tree, settings, &Glow::of(&self.emitters), &mut |points| self.sample(points))
     }
 
     /// Relative error of what `light` says of each vertex, and the seconds that this took.
@@ -144,7 +144,7 @@ impl Case {
     /// The settings whose bound takes as near to `count` samples as there is and no more, by bisection.
     fn settings_for(&self, count: usize, oracle: Oracle, stride: usize) -> Result<Settings, RadianceError> {
         let (mut low, mut high) = (1e-6_f64, 1e3_f64);
-        let settings = |bound| Settings { oracle, stride, bound, limit: 2 * count };
+        let settings = |bound| Settings { oracle, stride, bound, limit: 2 * count, ..Settings::default() };
         for _ in 0..14 {
             let middle = (low * high).sqrt();
             if self.refine(&settings(middle))?.samples.len() > count { low = middle } else { high = middle }

@@ -5,6 +5,7 @@
 
 mod emitter;
 mod error;
+mod glow;
 pub mod gpu;
 mod hierarchy;
 mod incident;
@@ -19,9 +20,10 @@ mod testing;
 
 pub use emitter::{Sphere, Triangle, check};
 pub use error::RadianceError;
+pub use glow::Glow;
 pub use hierarchy::{Hierarchy, MAX_VERTICES, Node};
 pub use incident::Incident;
 pub use octree::{LEVELS, Octree};
 pub use oracle::Oracle;
 pub use reconstruct::{OVERLAP, Reconstruction, TRUST, Weights};
-pub use refine::{Refined, Sample, Sampler, Settings, refine};
+pub use refine::{HIDDEN, Refined, Sample, Sampler, Settings, refine};

@@ -2,6 +2,8 @@
 //!
 //! Sun 2005, section 3.3.2 and eq. 3.3; section 5.2.3 asks for the sharper one that knows the transfer vectors.
 
+use glam::DVec3;
+
 use crate::{Incident, Node};
 
 /// How an error is estimated.
@@ -25,18 +27,34 @@ impl Oracle {
     /// vertex reflects light, where none arrives, and where all vertices coincide.
     #[must_use]
     pub fn estimate(self, node: &Node, vertices: usize, light: &Incident) -> f64 {
+        self.weight(node, vertices) * self.signal(light, DVec3::ZERO)
+    }
+
+    /// The factor of the estimate that only the node knows.
+    #[must_use]
+    pub fn weight(self, node: &Node, vertices: usize) -> f64 {
         let radius = f64::from(node.radius);
         if node.transfer == 0.0 || radius == 0.0 {
             return 0.0;
         }
         match self {
-            Self::Printed => radius * light.norm() / light.distance().powi(2),
-            Self::Argued => radius * light.norm() * (radius / light.distance()),
+            Self::Printed => radius,
+            Self::Argued => radius * radius,
             Self::Transfer => {
                 let share = f64::from(node.count) / vertices.max(1) as f64;
-                let slope = light.slope.length() / 3.0_f64.sqrt();
-                f64::from(node.transfer_rms) * slope * f64::from(node.spread) * share.sqrt()
+                f64::from(node.transfer_rms) * f64::from(node.spread) * share.sqrt()
             }
+        }
+    }
+
+    /// The factor that the light gives: of a sample, and for [`Oracle::Transfer`] at least that of a light whose slope is
+    /// `floor`, which may be hidden from the sample and not from its neighbours.
+    #[must_use]
+    pub fn signal(self, light: &Incident, floor: DVec3) -> f64 {
+        match self {
+            Self::Printed => light.norm() / light.distance().powi(2),
+            Self::Argued => light.norm() / light.distance(),
+            Self::Transfer => light.slope.length().max(floor.length()) / 3.0_f64.sqrt(),
         }
     }
 }

@@ -7,10 +7,13 @@
 
 use glam::DVec3;
 
-use crate::{Hierarchy, Incident, Oracle, RadianceError};
+use crate::{Glow, Hierarchy, Incident, Oracle, RadianceError};
 
 /// What samples: it is called once a round with its points, and returns as many lights.
 pub type Sampler<'a> = dyn FnMut(&[DVec3]) -> Result<Vec<Incident>, RadianceError> + 'a;
+
+/// The part of unhidden light that keeps a shadow from being taken for a whole node: see [`Settings::hidden`].
+pub const HIDDEN: f64 = 0.1;
 
 /// How far the tree is refined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +26,14 @@ pub struct Settings {
     pub limit: usize,
     /// Most levels that a split goes down, 1 to 8. More waste fewer samples on nodes that are split in turn.
     pub stride: usize,
+    /// What part of the light that emitters would send unhidden a sample is taken to miss, for [`Oracle::Transfer`]: 0 to
+    /// 1. With 0 a sample in a shadow speaks for its whole node.
+    pub hidden: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { oracle: Oracle::default(), bound: 0.01, limit: 4096, stride: 3 }
+        Self { oracle: Oracle::default(), bound: 0.01, limit: 4096, stride: 3, hidden: HIDDEN }
     }
 }
 
@@ -60,24 +66,28 @@ pub struct Refined {
 }
 
 impl Settings {
-    fn check(&self) -> Result<(), RadianceError> {
+    pub(crate) fn check(&self) -> Result<(), RadianceError> {
         if self.bound.is_nan() || self.bound < 0.0 {
             return Err(RadianceError::setting("bound", self.bound, "zero to infinity"));
         }
         if !(1..=8).contains(&self.stride) {
             return Err(RadianceError::setting("stride", self.stride, "1 to 8 levels"));
         }
+        if !(0.0..=1.0).contains(&self.hidden) {
+            return Err(RadianceError::setting("hidden", self.hidden, "0 to 1"));
+        }
         Ok(())
     }
 }
 
-/// Refines the tree.
+/// Refines the tree. `glows` are the emitters, for [`Settings::hidden`].
 ///
 /// # Errors
 /// A setting out of range; what `sample` reports; [`RadianceError::Length`] if it returns too few or too many.
 pub fn refine(
     hierarchy: &Hierarchy,
     settings: &Settings,
+    glows: &[Glow],
     sample: &mut Sampler<'_>,
 ) -> Result<Refined, RadianceError> {
     settings.check()?;
@@ -93,9 +103,12 @@ pub fn refine(
         for i in begin..refined.samples.len() {
             let sample = &refined.samples[i];
             let node = &hierarchy.nodes()[sample.node];
-            let estimate = settings.oracle.estimate(node, vertices, &sample.light);
-            let parts =
-                if estimate > settings.bound { parts(hierarchy, settings, sample) } else { Vec::new() };
+            let signal = settings.signal(sample, glows);
+            let estimate = settings.oracle.weight(node, vertices) * signal;
+            let parts = match estimate > settings.bound {
+                true => parts(hierarchy, settings, sample.node, signal),
+                false => Vec::new(),
+            };
             let fits = refined.samples.len() + round.len() + parts.len() <= settings.limit;
             if parts.is_empty() || !fits {
                 refined.limited |= !parts.is_empty();
@@ -107,6 +120,15 @@ pub fn refine(
         }
     }
     Ok(refined)
+}
+
+impl Settings {
+    /// What the oracle makes of a sample's light, and of what may be hidden from it.
+    fn signal(&self, sample: &Sample, glows: &[Glow]) -> f64 {
+        let unhidden = || glows.iter().map(|glow| glow.slope(sample.point)).sum::<DVec3>();
+        let floor = if self.hidden > 0.0 { self.hidden * unhidden() } else { DVec3::ZERO };
+        self.oracle.signal(&sample.light, floor)
+    }
 }
 
 fn take(
@@ -129,15 +151,15 @@ fn take(
     Ok(())
 }
 
-/// The nodes below a sample's that are sampled next: as few levels down as its light lets expect to be enough, within
+/// The nodes below a sample's that are sampled next: as few levels down as its signal lets expect to be enough, within
 /// the stride; without those that reflect nothing.
-fn parts(hierarchy: &Hierarchy, settings: &Settings, sample: &Sample) -> Vec<usize> {
+fn parts(hierarchy: &Hierarchy, settings: &Settings, split: usize, signal: f64) -> Vec<usize> {
     let vertices = hierarchy.vertices().len();
     let mut parts = Vec::new();
-    let mut open: Vec<(usize, usize)> = below(hierarchy, sample.node).map(|node| (node, 1)).collect();
+    let mut open: Vec<(usize, usize)> = below(hierarchy, split).map(|node| (node, 1)).collect();
     while let Some((number, level)) = open.pop() {
         let node = &hierarchy.nodes()[number];
-        let enough = settings.oracle.estimate(node, vertices, &sample.light) <= settings.bound;
+        let enough = settings.oracle.weight(node, vertices) * signal <= settings.bound;
         if node.transfer == 0.0 {
             continue;
         }

@@ -234,6 +234,27 @@ fn a_thin_wall_leaks_no_more_than_stated() {
     }
 }
 
+/// A sample that a blocker hides from every emitter does not speak for its neighbours that see them.
+#[test]
+fn a_shadow_is_not_taken_for_the_whole() {
+    let (positions, transfer) = floor(32);
+    let tree = tree(&positions, &transfer);
+    let mut emitters = lamp(DVec3::new(0.0, 0.8, 0.0), 0.1, 30.0);
+    emitters.extend(lamp(DVec3::new(0.0, 0.2, 0.0), 0.3, 0.0));
+    let run = |bound, hidden| {
+        let settings = Settings { bound, hidden, ..Settings::default() };
+        let refined = sample(&tree, &settings, &fine(), &emitters).unwrap();
+        (refined.samples.len(), colours(&refined, &positions, &transfer, Weights::Compact).0)
+    };
+    let (_, truth) = run(0.0, airglow_radiance::HIDDEN);
+    let blind = run(1e-3, 0.0);
+    assert!(blind.0 == 1 && blind.1.iter().all(|colour| *colour == 0.0), "{} samples", blind.0);
+    let (count, colours) = run(1e-3, airglow_radiance::HIDDEN);
+    let error = airglow_math::statistics::relative_l2(&colours, &truth).unwrap();
+    println!("{count} samples, error {error:.4}; without, 1 sample and the error 1");
+    assert!(error < 0.5, "{count} samples, error {error}");
+}
+
 #[test]
 fn what_is_occluded_is_dark() {
     let (positions, transfer) = floor(8);

@@ -1,6 +1,20 @@
 //! The room on a device: light sampled by kernels, and where they leave it.
 
 pub mod bench;
+pub mod kernels;
 mod layout;
+pub mod refinement;
+mod texels;
+pub mod tree;
+pub mod vertices;
 
 pub use layout::{Batch, EmitterTriangle, LightShape};
+pub use refinement::{RefineState, Refinement, SampleBuffers};
+pub use texels::{TexelBuffers, TexelSettings, Texels};
+pub use tree::DeviceNode;
+pub use vertices::VertexKernels;
+
+/// Little-endian words of a module's bytes.
+pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+}

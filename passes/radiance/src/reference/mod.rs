@@ -1,6 +1,6 @@
 //! Incident radiance in f64: what everything else is measured against.
 
-use crate::{Hierarchy, RadianceError, Refined, Settings, Triangle, check, refine};
+use crate::{Glow, Hierarchy, RadianceError, Refined, Settings, Triangle, check, refine};
 
 mod cube;
 mod polygon;
@@ -27,7 +27,7 @@ pub fn sample(
     if !triangles.iter().any(Triangle::emits) {
         return Ok(Refined::default());
     }
-    refine(hierarchy, settings, &mut |points| {
+    refine(hierarchy, settings, &Glow::of(triangles), &mut |points| {
         points.iter().map(|point| cube.sample(*point, triangles)).collect()
     })
 }
