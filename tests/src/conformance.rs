@@ -13,13 +13,13 @@ pub use airglow_conformance::*;
 /// of its buffers.
 ///
 /// # Panics
-/// As [`conform_on`], and if validation says anything.
+/// On an error of [`conform_on`], and if validation says anything.
 pub fn conform<R: Room>(
     make: impl Fn(&Context) -> R,
     requirements: &Requirements,
     options: &Options,
 ) -> Outputs {
-    conform_adopting(|context, _| make(context), requirements, options)
+    conform_adopting(|context, _| Ok(make(context)), requirements, options)
 }
 
 /// The same for a room that adopts the host's device on a road of its own, such as a library for another language.
@@ -27,7 +27,7 @@ pub fn conform<R: Room>(
 /// # Panics
 /// As [`conform`].
 pub fn conform_adopting<R: Room>(
-    make: impl Fn(&Context, &HostDevice<'_>) -> R,
+    make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
     requirements: &Requirements,
     options: &Options,
 ) -> Outputs {
@@ -36,6 +36,7 @@ pub fn conform_adopting<R: Room>(
     let host = HostDevice { features, ..stated(&open, &device) };
     // SAFETY: the device was just made, as stated, and is no one else's.
     let outputs = unsafe { conform_on(&host, requirements, options, make) };
+    let outputs = outputs.unwrap_or_else(|problem| panic!("{problem}"));
     // SAFETY: the device is idle, and everything made on it is gone.
     unsafe { device.destroy_device(None) };
     let said: Vec<_> = open.messages().take().iter().map(ToString::to_string).collect();

@@ -1,16 +1,11 @@
 //! The conformance kit for hosts in C and C++: the library's passes inside the host's own device, checked there.
 #![allow(dead_code, unused_imports, unused_macros, reason = "helpers of passes, of which there may be none")]
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "checks fail by panics, which the edge of each turns into text"
-)]
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::mem::zeroed;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use airglow_conformance::HostDevice;
+use airglow_conformance::{HostDevice, Refusal};
 use airglow_gpu::Requirements;
 use airglow_gpu::ash::{vk, vk::Handle};
 
@@ -20,13 +15,13 @@ use crate::physical::{AirglowFunction, get_instance_proc_addr};
 use crate::requirements::AirglowRequirements;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge, words};
 
-/// A check with its name; it panics with what is wrong.
-type Check = (&'static CStr, fn(&HostDevice<'_>));
+/// A check with its name; its error is what is wrong.
+type Check = (&'static CStr, fn(&HostDevice<'_>) -> Result<(), Refusal>);
 
 /// The checks of a pass.
 pub(crate) struct Checks {
     /// What they need of a device.
-    pub requirements: fn() -> Requirements,
+    pub requirements: fn() -> Result<Requirements, Refusal>,
     /// Each check.
     pub checks: &'static [Check],
 }
@@ -80,7 +75,13 @@ pub unsafe extern "C" fn airglow_conformance_require(
     unsafe {
         edge(error, || {
             let requirements = exclusive(requirements, "requirements")?;
-            ROOMS.iter().for_each(|room| requirements.add(&(room.requirements)()));
+            for room in ROOMS {
+                let asked = (room.requirements)();
+                let asked = asked.map_err(|problem| {
+                    Failure::new(AirglowStatus::Internal, format!("a defect of the library: {problem}"))
+                })?;
+                requirements.add(&asked);
+            }
             Ok(())
         })
     }
@@ -117,9 +118,12 @@ pub unsafe extern "C" fn airglow_conformance_run(
 fn run(host: &HostDevice<'_>, info: &AirglowConformanceInfo) -> u32 {
     let mut failures = 0;
     for (name, check) in ROOMS.iter().flat_map(|room| room.checks) {
-        let failure = catch_unwind(AssertUnwindSafe(|| check(host))).err();
+        let failure = match catch_unwind(AssertUnwindSafe(|| check(host))) {
+            Ok(checked) => checked.err().map(|problem| problem.to_string()),
+            Err(panic) => Some(format!("a defect of the library: {}", words(panic))),
+        };
         failures += u32::from(failure.is_some());
-        let text = failure.map(|panic| CString::new(words(panic).replace('\0', " ")).unwrap_or_default());
+        let text = failure.map(|problem| CString::new(problem.replace('\0', " ")).unwrap_or_default());
         let failure = text.as_ref().map_or(std::ptr::null(), |text| text.as_ptr());
         if let Some(report) = info.report {
             // SAFETY: the host's function with the host's pointer; both texts outlive the call.
@@ -177,17 +181,18 @@ pub(crate) fn message(error: &AirglowError) -> &str {
     unsafe { CStr::from_ptr(error.message.as_ptr()) }.to_str().unwrap_or("a message that is not UTF-8")
 }
 
-/// Calls a function with an error at its end, and fails the check with the message.
-macro_rules! call {
+/// Calls a function with an error at its end; whatever it refuses is a [`Refusal`] with its words.
+macro_rules! attempt {
     ($function:path, $($argument:expr),*) => {{
         let mut error = $crate::conformance::error();
         // SAFETY: the kit and the tests keep the function's promises.
         let status = unsafe { $function($($argument,)* &raw mut error) };
-        let said = $crate::conformance::message(&error);
-        assert_eq!(status, $crate::status::AirglowStatus::Ok, "{}: {said}", stringify!($function));
+        let said = || format!("{}: {}", stringify!($function), $crate::conformance::message(&error));
+        let done = status == $crate::status::AirglowStatus::Ok;
+        done.then_some(()).ok_or_else(|| airglow_conformance::Refusal::from(said()))
     }};
 }
-pub(crate) use call;
+pub(crate) use attempt;
 
 /// A function of Vulkan as the header has it.
 pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {
@@ -213,10 +218,13 @@ pub(crate) fn adopt_info(host: &HostDevice<'_>) -> AirglowAdoptInfo {
 }
 
 /// Adopts a host's device for what `requirements` ask.
-pub(crate) fn adopt(host: &HostDevice<'_>, requirements: *const AirglowRequirements) -> *mut AirglowContext {
-    let names = |texts: &[&str]| texts.iter().map(|text| CString::new(*text).unwrap()).collect::<Vec<_>>();
-    let extensions = names(host.extensions);
-    let features = names(&host.features.iter().map(|feature| feature.name()).collect::<Vec<_>>());
+pub(crate) fn adopt(
+    host: &HostDevice<'_>,
+    requirements: *const AirglowRequirements,
+) -> Result<*mut AirglowContext, Refusal> {
+    let names = |texts: &[&str]| texts.iter().map(|text| CString::new(*text)).collect::<Result<Vec<_>, _>>();
+    let extensions = names(host.extensions)?;
+    let features = names(&host.features.iter().map(|feature| feature.name()).collect::<Vec<_>>())?;
     let extension_names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
     let feature_names: Vec<_> = features.iter().map(|name| name.as_ptr()).collect();
     let info = AirglowAdoptInfo {
@@ -228,6 +236,6 @@ pub(crate) fn adopt(host: &HostDevice<'_>, requirements: *const AirglowRequireme
         ..adopt_info(host)
     };
     let mut context = std::ptr::null_mut();
-    call!(airglow_context_adopt, &raw const info, &raw mut context);
-    context
+    attempt!(airglow_context_adopt, &raw const info, &raw mut context)?;
+    Ok(context)
 }

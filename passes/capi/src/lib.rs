@@ -17,6 +17,8 @@ pub mod physical;
 pub mod relight;
 pub mod requirements;
 pub mod status;
+#[cfg(test)]
+mod testing;
 pub mod text;
 pub mod world;
 

@@ -1,12 +1,10 @@
 //! The host: its memory and its submission, on a device that is given.
 
 use super::roads::{by_graph, by_record, fill, read_back};
-use super::{Content, Given, HostResource, Outputs, Road, Room, layout_after};
+use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, layout_after};
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
-use airglow_gpu::{
-    AdoptInfo, Context, FeatureSet, GpuError, Label, Options, Readback, Recorder, Requirements,
-};
+use airglow_gpu::{AdoptInfo, Context, FeatureSet, Label, Options, Readback, Recorder, Requirements};
 
 /// A host on a device.
 pub(super) struct Host<'a> {
@@ -52,6 +50,11 @@ enum Raw {
     Buffer(vk::Buffer),
 }
 
+/// What the host asked its device for, beside the device's answer.
+fn of(what: &'static str) -> impl Fn(vk::Result) -> Refusal {
+    move |result| format!("the host asked for {what}: {result}").into()
+}
+
 impl Made {
     fn into_own(self) -> (Raw, vk::DeviceMemory) {
         let raw = match self.given {
@@ -67,7 +70,7 @@ impl<'a> Host<'a> {
     ///
     /// # Safety
     /// `stated` is true, and its device outlives this.
-    pub(super) unsafe fn new(stated: &HostDevice<'a>) -> Self {
+    pub(super) unsafe fn new(stated: &HostDevice<'a>) -> Result<Self, Refusal> {
         // SAFETY: the caller vouches for the functions and the handles; names end in a nul.
         unsafe {
             let get = |name: &std::ffi::CStr| (stated.get_device_proc_addr)(stated.device, name.as_ptr());
@@ -75,19 +78,19 @@ impl<'a> Host<'a> {
                 |name: &std::ffi::CStr| std::mem::transmute::<vk::PFN_vkVoidFunction, *const _>(get(name));
             let device = ash::Device::load_with(load, stated.device);
             let info = vk::CommandPoolCreateInfo::default().queue_family_index(stated.queue_family);
-            let pool = device.create_command_pool(&info, None).expect("a command pool");
-            Self { stated: *stated, device, pool }
+            let pool = device.create_command_pool(&info, None).map_err(of("a command pool"))?;
+            Ok(Self { stated: *stated, device, pool })
         }
     }
 
     /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
     pub(super) fn run<R: Room>(
         &self,
-        make: impl Fn(&Context, &HostDevice<'_>) -> R,
+        make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
         requirements: &Requirements,
         options: &Options,
         road: Road,
-    ) -> (Outputs, Vec<Call>) {
+    ) -> Result<(Outputs, Vec<Call>), Refusal> {
         // SAFETY: `Self::new` was given live handles with their own functions.
         let shim = unsafe { Shim::watching(&self.stated) };
         let host = HostDevice { get_device_proc_addr: shim.get_device_proc_addr(), ..self.stated };
@@ -108,69 +111,77 @@ impl<'a> Host<'a> {
             options: options.clone(),
         };
         // SAFETY: handles of this host; all that is made from the context is dropped below, after waiting.
-        let context = unsafe { Context::adopt(info) }.unwrap_or_else(|error| panic!("{error}"));
-        let mut room = make(&context, &host);
+        let context = unsafe { Context::adopt(info) }?;
+        let mut room = make(&context, &host)?;
         let resources = room.resources();
-        let made: Vec<_> = resources.iter().map(|resource| self.make(&context, resource)).collect();
+        let made = resources.iter().map(|resource| self.make(&context, resource));
+        let made = made.collect::<Result<Vec<_>, _>>()?;
         let given: Vec<_> = made.iter().map(|made| made.given.clone()).collect();
         let (mut calls, mut execution) = (Vec::new(), None);
-        let copies = self.frame(&context, |recorder| {
+        let outputs = self.frame(&context, |recorder| {
             for (resource, given) in resources.iter().zip(&given) {
                 fill(recorder, resource, given, resource.entry)?;
             }
             shim.take_calls();
             match road {
-                Road::Graph => execution = Some(by_graph(&mut room, recorder, &resources, &given)),
-                Road::Record => by_record(&mut room, recorder, &resources, &given, &shim, &mut calls),
+                Road::Graph => execution = Some(by_graph(&mut room, recorder, &resources, &given)?),
+                Road::Record => by_record(&mut room, recorder, &resources, &given, &shim, &mut calls)?,
             }
             if road == Road::Graph {
                 calls = shim.take_calls();
                 for (resource, given) in resources.iter().zip(&given) {
                     let Given::Image(image) = given else { continue };
-                    let layout = layout_after(&calls, image.raw(), resource.entry.layout);
-                    assert_eq!(layout, resource.exit.layout, "{} on exit", resource.name);
+                    let layout = layout_after(&calls, image.raw(), resource.entry.layout)?;
+                    if layout != resource.exit.layout {
+                        let (name, promised) = (resource.name, resource.exit.layout);
+                        return Err(format!("{name}: {layout:?} on exit, {promised:?} promised").into());
+                    }
                 }
             }
-            read_back(recorder, &resources, &given)
+            Ok(read_back(recorder, &resources, &given)?)
         });
-        let outputs = copies.iter().map(|copy| copy.read::<u8>().unwrap_or_default()).collect();
         let own: Vec<_> = made.into_iter().map(Made::into_own).collect();
-        drop((copies, execution, room, given, context));
+        drop((execution, room, given, context));
         own.into_iter().for_each(|own| self.destroy(own));
-        assert!(shim.alive().is_empty(), "{road:?} left alive: {:?}", shim.alive());
-        (outputs, calls)
-    }
-
-    /// Records, submits and waits.
-    fn frame(
-        &self,
-        context: &Context,
-        record: impl FnOnce(&mut Recorder<'_>) -> Result<Vec<Readback>, GpuError>,
-    ) -> Vec<Readback> {
-        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
-        // SAFETY: handles of this host; the command buffer is recorded, submitted once and waited for here.
-        unsafe {
-            let commands = self.device.allocate_command_buffers(&info).expect("a command buffer");
-            self.device.begin_command_buffer(commands[0], &Default::default()).expect("recording");
-            let copies =
-                record(&mut Recorder::new(context, commands[0])).unwrap_or_else(|error| panic!("{error}"));
-            self.device.end_command_buffer(commands[0]).expect("a complete command buffer");
-            let submit = vk::SubmitInfo::default().command_buffers(&commands);
-            self.device.queue_submit(self.stated.queue, &[submit], vk::Fence::null()).expect("submission");
-            self.device.queue_wait_idle(self.stated.queue).expect("the frame's end");
-            copies
+        let outputs = outputs?;
+        match shim.alive() {
+            alive if alive.is_empty() => Ok((outputs, calls)),
+            alive => Err(format!("{road:?} left alive: {alive:?}").into()),
         }
     }
 
+    /// Records, submits and waits; what was read back.
+    fn frame(
+        &self,
+        context: &Context,
+        record: impl FnOnce(&mut Recorder<'_>) -> Result<Vec<Readback>, Refusal>,
+    ) -> Result<Outputs, Refusal> {
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+        // SAFETY: handles of this host; the command buffer is recorded, submitted once and waited for here.
+        let copies = unsafe {
+            let commands = self.device.allocate_command_buffers(&info).map_err(of("a command buffer"))?;
+            let begun = self.device.begin_command_buffer(commands[0], &Default::default());
+            begun.map_err(of("recording"))?;
+            let copies = record(&mut Recorder::new(context, commands[0]))?;
+            self.device.end_command_buffer(commands[0]).map_err(of("a complete command buffer"))?;
+            let submit = vk::SubmitInfo::default().command_buffers(&commands);
+            let submitted = self.device.queue_submit(self.stated.queue, &[submit], vk::Fence::null());
+            submitted.map_err(of("submission"))?;
+            self.device.queue_wait_idle(self.stated.queue).map_err(of("the frame's end"))?;
+            copies
+        };
+        Ok(copies.iter().map(|copy| copy.read::<u8>()).collect::<Result<_, _>>()?)
+    }
+
     /// Makes a resource with memory of its own.
-    fn make(&self, context: &Context, resource: &HostResource) -> Made {
+    fn make(&self, context: &Context, resource: &HostResource) -> Result<Made, Refusal> {
         let label = Label::new("host", resource.name);
         let allocate = |requirements: vk::MemoryRequirements| {
             let info = vk::MemoryAllocateInfo::default()
                 .allocation_size(requirements.size)
                 .memory_type_index(requirements.memory_type_bits.trailing_zeros());
             // SAFETY: a live device and an allowed memory type.
-            unsafe { self.device.allocate_memory(&info, None) }.expect("memory")
+            unsafe { self.device.allocate_memory(&info, None) }.map_err(of("memory"))
         };
         // SAFETY: a live device and complete descriptions; what is imported is destroyed after the context's clones.
         unsafe {
@@ -184,17 +195,17 @@ impl<'a> Host<'a> {
                         .array_layers(desc.layers)
                         .samples(desc.samples)
                         .usage(desc.usage);
-                    let raw = self.device.create_image(&info, None).expect("an image");
-                    let memory = allocate(self.device.get_image_memory_requirements(raw));
-                    self.device.bind_image_memory(raw, memory, 0).expect("bound memory");
-                    Made { given: Given::Image(context.import_image(raw, label, desc)), memory }
+                    let raw = self.device.create_image(&info, None).map_err(of("an image"))?;
+                    let memory = allocate(self.device.get_image_memory_requirements(raw))?;
+                    self.device.bind_image_memory(raw, memory, 0).map_err(of("bound memory"))?;
+                    Ok(Made { given: Given::Image(context.import_image(raw, label, desc)), memory })
                 }
                 Content::Buffer(desc, _) => {
                     let info = vk::BufferCreateInfo::default().size(desc.size).usage(desc.usage);
-                    let raw = self.device.create_buffer(&info, None).expect("a buffer");
-                    let memory = allocate(self.device.get_buffer_memory_requirements(raw));
-                    self.device.bind_buffer_memory(raw, memory, 0).expect("bound memory");
-                    Made { given: Given::Buffer(context.import_buffer(raw, label, desc)), memory }
+                    let raw = self.device.create_buffer(&info, None).map_err(of("a buffer"))?;
+                    let memory = allocate(self.device.get_buffer_memory_requirements(raw))?;
+                    self.device.bind_buffer_memory(raw, memory, 0).map_err(of("bound memory"))?;
+                    Ok(Made { given: Given::Buffer(context.import_buffer(raw, label, desc)), memory })
                 }
             }
         }

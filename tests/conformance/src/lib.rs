@@ -1,9 +1,8 @@
 //! The conformance kit: plays a host around a room on a device that is given, with images and buffers of its own, and
 //! commands of its own before and after. The room is recorded by both roads.
 //!
-//! It asserts bits, layouts, command-buffer state, and that nothing stays alive, by panics that say what is wrong. What
+//! It checks bits, layouts, command-buffer state, and that nothing stays alive, and returns what is wrong as an error. What
 //! validation says is for whoever made the device to hear.
-#![expect(clippy::panic, reason = "a kit of tests fails the test it is called from")]
 
 mod host;
 pub mod plan;
@@ -20,7 +19,7 @@ use std::error::Error;
 
 pub use host::HostDevice;
 
-/// What a room says when it refuses.
+/// What a room says when it refuses, or the kit of what it found.
 pub type Refusal = Box<dyn Error>;
 
 /// What a host's resource is, and what it holds before the room.
@@ -109,44 +108,53 @@ pub enum Road {
 /// Bytes that the host's buffers hold after the room, in order; images are skipped.
 pub type Outputs = Vec<Vec<u8>>;
 
-/// Runs a room made by `make` on the host's device by both roads, asserts what a host relies on, and returns the bytes of
-/// its buffers. The device is idle afterwards.
+/// Runs a room made by `make` on the host's device by both roads, checks what a host relies on, and returns the bytes of
+/// its buffers. The device is idle afterwards; after an error, objects of it may be left.
 ///
 /// # Safety
 /// `host` states a live device truly; no one else uses its queue meanwhile.
 ///
-/// # Panics
-/// If the room refuses, the roads differ, layouts or state are not as promised, or something stays alive.
+/// # Errors
+/// What the room or the device refuses, how the roads differ, layouts or state that are not as promised, what stays alive.
 pub unsafe fn conform_on<R: Room>(
     host: &HostDevice<'_>,
     requirements: &Requirements,
     options: &Options,
-    make: impl Fn(&Context, &HostDevice<'_>) -> R,
-) -> Outputs {
+    make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
+) -> Result<Outputs, Refusal> {
     let requirements = Requirements::engine().and(requirements);
-    let [by_graph, by_record] = [Road::Graph, Road::Record].map(|road| {
+    let run = |road| -> Result<Outputs, Refusal> {
         // SAFETY: the caller's promise is ours.
-        let (outputs, calls) = unsafe { Host::new(host) }.run(&make, &requirements, options, road);
-        assert_state(&calls, road);
-        outputs
-    });
-    assert_eq!(by_graph.len(), by_record.len());
+        let host = unsafe { Host::new(host)? };
+        let (outputs, calls) = host.run(&make, &requirements, options, road)?;
+        check_state(&calls, road)?;
+        Ok(outputs)
+    };
+    let (by_graph, by_record) = (run(Road::Graph)?, run(Road::Record)?);
     for (index, (by_graph, by_record)) in by_graph.iter().zip(&by_record).enumerate() {
-        let differs = by_graph.iter().zip(by_record).position(|(a, b)| a != b);
-        assert_eq!(differs, None, "buffer {index}: the roads differ from that byte on");
-        assert_eq!(by_graph.len(), by_record.len());
+        if let Some(byte) = by_graph.iter().zip(by_record).position(|(a, b)| a != b) {
+            return Err(format!("buffer {index}: the roads differ from byte {byte} on").into());
+        }
     }
-    by_graph
+    let sizes = |outputs: &Outputs| outputs.iter().map(Vec::len).collect::<Vec<_>>();
+    match sizes(&by_graph) == sizes(&by_record) {
+        true => Ok(by_graph),
+        false => Err("the roads give buffers of other sizes".into()),
+    }
 }
 
 /// Only documented commands, each scope closed again.
-fn assert_state(calls: &[Call], road: Road) {
-    assert!(!calls.is_empty(), "{road:?}: nothing was recorded");
+fn check_state(calls: &[Call], road: Road) -> Result<(), Refusal> {
+    let wrong = |what: String| Err(format!("{road:?}: {what}").into());
+    if calls.is_empty() {
+        return wrong("nothing was recorded".to_owned());
+    }
     for call in calls {
-        let known = STATE.contains(&call.name) || ACTIONS.contains(&call.name);
-        assert!(known, "{road:?}: {} is in neither list", call.name);
-        if call.name == "vkCmdBindDescriptorSets" {
-            assert_eq!(call.numbers[1..], [0, 1], "{road:?}: set 0 alone");
+        if !STATE.contains(&call.name) && !ACTIONS.contains(&call.name) {
+            return wrong(format!("{} is in neither list", call.name));
+        }
+        if call.name == "vkCmdBindDescriptorSets" && call.numbers.get(1..) != Some(&[0, 1]) {
+            return wrong(format!("it binds other descriptor sets than 0: {:?}", call.numbers));
         }
     }
     for [begin, end] in [
@@ -154,16 +162,27 @@ fn assert_state(calls: &[Call], road: Road) {
         ["vkCmdBeginDebugUtilsLabelEXT", "vkCmdEndDebugUtilsLabelEXT"],
     ] {
         let count = |name| calls.iter().filter(|call| call.name == name).count();
-        assert_eq!(count(begin), count(end), "{road:?}: {begin} without {end}");
+        if count(begin) != count(end) {
+            return wrong(format!("{begin} without {end}"));
+        }
     }
+    Ok(())
 }
 
 /// The layout that the commands leave `image` in, or `entry` if no barrier names it.
-fn layout_after(calls: &[Call], image: vk::Image, entry: vk::ImageLayout) -> vk::ImageLayout {
-    let barriers = calls.iter().flat_map(|call| &call.images).filter(|barrier| barrier.image == image);
-    barriers.fold(entry, |before, barrier| {
-        let matches = barrier.old_layout == before || barrier.old_layout == vk::ImageLayout::UNDEFINED;
-        assert!(matches, "a barrier expects {:?}, the image is in {before:?}", barrier.old_layout);
-        barrier.new_layout
+fn layout_after(
+    calls: &[Call],
+    image: vk::Image,
+    entry: vk::ImageLayout,
+) -> Result<vk::ImageLayout, Refusal> {
+    let mut barriers = calls.iter().flat_map(|call| &call.images).filter(|barrier| barrier.image == image);
+    barriers.try_fold(entry, |before, barrier| {
+        match barrier.old_layout == before || barrier.old_layout == vk::ImageLayout::UNDEFINED {
+            true => Ok(barrier.new_layout),
+            false => {
+                let expected = barrier.old_layout;
+                Err(format!("a barrier expects {expected:?}, the image is in {before:?}").into())
+            }
+        }
     })
 }

@@ -1,24 +1,18 @@
-//! Compiling as every test does: with the independent checker looking at the plan.
+//! Compiling with the independent checker looking at the plan.
 
 use airglow_graph::{Graph, Limits, Options, Plan};
 
-/// Compiles, and fails the test unless the checker finds the plan sound and no barrier redundant.
-///
-/// # Panics
-/// On a graph that does not compile, a violation, or a redundant barrier, with the plan.
-pub fn compile<R>(graph: Graph<R>, limits: &Limits) -> Plan<R> {
-    compile_with(graph, limits, &Options::default())
-}
+use crate::Refusal;
 
-/// [`compile`] with choices.
+/// Compiles a graph into a plan that the checker finds sound and without a redundant barrier.
 ///
-/// # Panics
-/// As [`compile`].
-pub fn compile_with<R>(graph: Graph<R>, limits: &Limits, options: &Options) -> Plan<R> {
-    let plan = graph.compile_with(limits, options).unwrap_or_else(|error| panic!("{error}"));
+/// # Errors
+/// Why the graph does not compile; a violation or a redundant barrier, with the plan.
+pub fn checked<R>(graph: Graph<R>, limits: &Limits, options: &Options) -> Result<Plan<R>, Refusal> {
+    let plan = graph.compile_with(limits, options)?;
     match airglow_checker::check(&plan) {
-        Ok(report) if report.redundant.is_empty() => plan,
-        Ok(report) => panic!("{report}\n{}", plan.text()),
-        Err(violation) => panic!("{violation}\n{}", plan.text()),
+        Ok(report) if report.redundant.is_empty() => Ok(plan),
+        Ok(report) => Err(format!("{report}\n{}", plan.text()).into()),
+        Err(violation) => Err(format!("{violation}\n{}", plan.text()).into()),
     }
 }

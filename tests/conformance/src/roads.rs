@@ -1,7 +1,7 @@
 //! What is recorded around a room and by it: the host's own commands, our plan, or the host's own frame graph.
 
-use super::{Content, Given, HostResource, Named, Room};
-use crate::plan::compile;
+use super::{Content, Given, HostResource, Named, Refusal, Room};
+use crate::plan::checked;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Execution, GpuError, Imports, Readback, Record, Recorder};
@@ -56,7 +56,7 @@ pub(super) fn by_graph(
     recorder: &mut Recorder<'_>,
     resources: &[HostResource],
     given: &[Given],
-) -> Execution {
+) -> Result<Execution, Refusal> {
     let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
     let name = |(resource, given): (&HostResource, &Given)| match given {
         Given::Buffer(buffer) => {
@@ -72,13 +72,13 @@ pub(super) fn by_graph(
     };
     let named: Vec<_> = resources.iter().zip(given).map(name).collect();
     let context = recorder.context();
-    room.add(context, &mut graph, &mut imports, &named).unwrap_or_else(|error| panic!("{error}"));
-    let plan = compile(graph, &context.graph_limits());
-    let mut execution = Execution::prepare(context, plan).unwrap_or_else(|error| panic!("{error}"));
+    room.add(context, &mut graph, &mut imports, &named)?;
+    let plan = checked(graph, &context.graph_limits(), &Default::default())?;
+    let mut execution = Execution::prepare(context, plan)?;
     // SAFETY: the recorder's command buffer is recording; the host brought every import to its entry state.
     let recorded = unsafe { execution.record(context, recorder.command_buffer(), &imports, None) };
-    recorded.unwrap_or_else(|error| panic!("{error}"));
-    execution
+    recorded?;
+    Ok(execution)
 }
 
 /// The host's own frame graph: its barriers around the room come from the room's accesses.
@@ -89,23 +89,24 @@ pub(super) fn by_record(
     given: &[Given],
     shim: &Shim,
     calls: &mut Vec<Call>,
-) {
-    let accesses = room.accesses(recorder.context()).unwrap_or_else(|error| panic!("{error}"));
-    let around = |before: bool, recorder: &mut Recorder<'_>| {
+) -> Result<(), Refusal> {
+    let accesses = room.accesses(recorder.context())?;
+    let around = |before: bool, recorder: &mut Recorder<'_>| -> Result<(), Refusal> {
         for ((resource, given), used) in resources.iter().zip(given).zip(&accesses) {
             let Some((first, last)) = used else { continue };
             let [from, to] = match before {
                 true => [resource.entry, State::of(*first)],
                 false => [State::of(*last), resource.exit],
             };
-            hand_over(recorder, given, from, to).unwrap_or_else(|error| panic!("{error}"));
+            hand_over(recorder, given, from, to)?;
         }
+        Ok(())
     };
-    around(true, recorder);
+    around(true, recorder)?;
     shim.take_calls();
-    room.record(recorder, given).unwrap_or_else(|error| panic!("{error}"));
+    room.record(recorder, given)?;
     *calls = shim.take_calls();
-    around(false, recorder);
+    around(false, recorder)
 }
 
 /// The host's own commands after the room.

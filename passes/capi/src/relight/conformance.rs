@@ -1,6 +1,5 @@
 //! The pass inside a host: by the graph from Rust, by accesses and record from C. The kit holds both to the same bits,
 //! layouts and state.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "checks fail by panics")]
 
 use std::mem::zeroed;
 use std::ptr;
@@ -11,10 +10,10 @@ use airglow_conformance::{
 use airglow_gpu::ash::vk::{BufferUsageFlags as Usage, Format, Handle, ImageUsageFlags};
 use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
 use airglow_graph::{Access, BufferDesc, Graph, ImageDesc};
-use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight};
+use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight, Settings};
 use glam::DQuat;
 
-use crate::conformance::{Checks, adopt, call};
+use crate::conformance::{Checks, adopt, attempt};
 use crate::context::{AirglowContext, airglow_context_drop};
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
 use crate::relight::lists::{AirglowAccess, airglow_prepared_accesses};
@@ -29,6 +28,7 @@ use crate::relight::{
     airglow_relight_require, airglow_relight_set_environment, airglow_relight_set_world,
 };
 use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+use crate::status::Failure;
 use crate::world::{AirglowAxis, AirglowWorld};
 
 const WIDTH: u32 = 32;
@@ -46,6 +46,9 @@ fn sky() -> Vec<[f32; 3]> {
     numbers((3 * WIDTH * HEIGHT) as usize, 0.3).chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
 }
 
+/// Method, whether the library gets the sky as texels, the host's world.
+pub(crate) type Case<'a> = (u32, bool, Option<&'a AirglowWorld>);
+
 /// The pass twice: made by Rust, and made by the exported functions.
 pub(crate) struct Both {
     relight: Relight,
@@ -62,29 +65,30 @@ impl Both {
     pub(crate) fn new(
         context: &Context,
         host: &HostDevice<'_>,
-        (method, texels, world): (u32, bool, Option<&AirglowWorld>),
-    ) -> Self {
+        (method, texels, world): Case<'_>,
+    ) -> Result<Self, Refusal> {
         let settings = settings(method);
         let vectors = numbers(16 * VERTICES as usize, 0.7);
-        let mut relight = Relight::new(context, settings.read().unwrap()).unwrap();
-        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors)).unwrap();
-        let asked = requirements(&settings);
-        let (context, mut through_c) = (adopt(host, asked), ptr::null_mut());
+        let mut relight = Relight::new(context, read(&settings)?)?;
+        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors))?;
+        let asked = requirements(&settings)?;
+        let adopted = adopt(host, asked);
         // SAFETY: they were read by the call above alone.
         unsafe { airglow_requirements_drop(asked) };
-        call!(airglow_relight_new, context, &raw const settings, &raw mut through_c);
+        let (context, mut through_c) = (adopted?, ptr::null_mut());
+        attempt!(airglow_relight_new, context, &raw const settings, &raw mut through_c)?;
         // SAFETY: zero bytes are a valid instance.
         let mut instance: AirglowRelightInstance = unsafe { zeroed() };
         let (name, values, mesh_number) = (c"mesh".as_ptr(), vectors.as_ptr(), &raw mut instance.mesh);
-        call!(airglow_relight_add_mesh, through_c, name, VERTICES, values, vectors.len(), mesh_number);
+        attempt!(airglow_relight_add_mesh, through_c, name, VERTICES, values, vectors.len(), mesh_number)?;
         if let Some(world) = world {
-            relight.set_world(world.read().unwrap()).unwrap();
-            call!(airglow_relight_set_world, through_c, world);
+            relight.set_world(world.read().map_err(said)?)?;
+            attempt!(airglow_relight_set_world, through_c, world)?;
         }
         if texels {
-            call!(airglow_relight_set_environment, through_c, WIDTH, HEIGHT, sky().as_ptr().cast());
+            attempt!(airglow_relight_set_environment, through_c, WIDTH, HEIGHT, sky().as_ptr().cast())?;
         }
-        Self { relight, mesh, context, through_c, instance, prepared: ptr::null_mut(), texels }
+        Ok(Self { relight, mesh, context, through_c, instance, prepared: ptr::null_mut(), texels })
     }
 }
 
@@ -158,20 +162,20 @@ impl Room for Both {
             environment_height: HEIGHT,
             environment_revision: 1,
         };
-        call!(airglow_relight_prepare, self.through_c, &raw const frame, &raw mut self.prepared);
-        call!(airglow_prepared_make_scratch, self.prepared);
+        attempt!(airglow_relight_prepare, self.through_c, &raw const frame, &raw mut self.prepared)?;
+        attempt!(airglow_prepared_make_scratch, self.prepared)?;
         let mut count = 0;
-        call!(airglow_prepared_accesses, self.prepared, ptr::null_mut(), &raw mut count);
+        attempt!(airglow_prepared_accesses, self.prepared, ptr::null_mut(), &raw mut count)?;
         // SAFETY: zero bytes are a valid access.
         let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
-        call!(airglow_prepared_accesses, self.prepared, uses.as_mut_ptr(), &raw mut count);
-        let ends = |resource: AirglowResource| {
-            let mut all = uses.iter().filter(|used| used.resource == resource as u32).map(known);
-            let first = all.next()?;
-            Some((first, all.next_back().unwrap_or(first)))
+        attempt!(airglow_prepared_accesses, self.prepared, uses.as_mut_ptr(), &raw mut count)?;
+        let ends = |resource: AirglowResource| -> Result<_, Refusal> {
+            let all = uses.iter().filter(|used| used.resource == resource as u32).map(known);
+            let all = all.collect::<Result<Vec<_>, _>>()?;
+            Ok(all.first().copied().zip(all.last().copied()))
         };
-        let sky = ends(AirglowResource::Environment).filter(|_| !self.texels);
-        Ok(vec![sky, ends(AirglowResource::Results)])
+        let sky = ends(AirglowResource::Environment)?.filter(|_| !self.texels);
+        Ok(vec![sky, ends(AirglowResource::Results)?])
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
@@ -198,19 +202,20 @@ impl Room for Both {
             });
         }
         let commands = recorder.command_buffer().as_raw();
-        call!(airglow_prepared_record, self.prepared, commands, bindings.as_ptr(), bindings.len());
+        attempt!(airglow_prepared_record, self.prepared, commands, bindings.as_ptr(), bindings.len())?;
         Ok(())
     }
 }
 
 /// The access of the table that has those numbers.
-fn known(used: &AirglowAccess) -> Access {
+fn known(used: &AirglowAccess) -> Result<Access, Refusal> {
     let numbers = (used.stage, used.access, used.writes != 0);
     let same = |access: &&Access| {
         (access.stage().as_raw(), access.access().as_raw(), access.writes()) == numbers
             && (used.layout == 0 || access.layout().as_raw() as u32 == used.layout)
     };
-    *Access::ALL.iter().find(same).unwrap()
+    let found = Access::ALL.iter().find(same).copied();
+    found.ok_or_else(|| format!("no use has stage {:#x} and access {:#x}", used.stage, used.access).into())
 }
 
 /// Settings that are all default but for the method.
@@ -220,29 +225,36 @@ pub(crate) fn settings(method: u32) -> AirglowRelightSettings {
     AirglowRelightSettings { struct_size, method, ..unsafe { zeroed() } }
 }
 
+/// The settings as Rust has them.
+fn read(settings: &AirglowRelightSettings) -> Result<Settings, Refusal> {
+    settings.read().map_err(said)
+}
+
+fn said(failure: Failure) -> Refusal {
+    failure.message.into()
+}
+
 /// What the pass asks for.
-pub(crate) fn requirements(settings: &AirglowRelightSettings) -> *mut AirglowRequirements {
+pub(crate) fn requirements(settings: &AirglowRelightSettings) -> Result<*mut AirglowRequirements, Refusal> {
     let mut requirements = ptr::null_mut();
-    call!(airglow_requirements_new, &raw mut requirements);
-    call!(airglow_relight_require, requirements, settings);
-    requirements
+    attempt!(airglow_requirements_new, &raw mut requirements)?;
+    attempt!(airglow_relight_require, requirements, settings)?;
+    Ok(requirements)
 }
 
 /// What the kit holds the pass to.
 pub(crate) const CHECKS: Checks = Checks {
-    requirements: || asked(0).and(&asked(1)),
+    requirements: || Ok(asked(0)?.and(&asked(1)?)),
     checks: &[
-        (c"relight: compute, an environment in the host's image", |host| assert_lit(host, (0, false, None))),
-        (c"relight: compute, an environment as texels", |host| assert_lit(host, (0, true, None))),
-        (c"relight: fragment, an environment in the host's image", |host| assert_lit(host, (1, false, None))),
-        (c"relight: a host with Z up, left-handed, exposed", |host| {
-            assert_lit(host, (0, false, Some(&z_up())))
-        }),
+        (c"relight: compute, an environment in the host's image", |host| check(host, (0, false, None))),
+        (c"relight: compute, an environment as texels", |host| check(host, (0, true, None))),
+        (c"relight: fragment, an environment in the host's image", |host| check(host, (1, false, None))),
+        (c"relight: a host with Z up, left-handed, exposed", |host| check(host, (0, false, Some(&z_up())))),
     ],
 };
 
-fn asked(method: u32) -> Requirements {
-    Relight::requirements(&settings(method).read().unwrap())
+fn asked(method: u32) -> Result<Requirements, Refusal> {
+    Ok(Relight::requirements(&read(&settings(method))?))
 }
 
 /// A host that differs from airglow in all that the pass reads.
@@ -259,17 +271,19 @@ pub(crate) fn z_up() -> AirglowWorld {
     }
 }
 
-fn assert_lit(host: &HostDevice<'_>, case: (u32, bool, Option<&AirglowWorld>)) {
-    let method = case.0;
+fn check(host: &HostDevice<'_>, case: Case<'_>) -> Result<(), Refusal> {
     let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, case);
     // SAFETY: whoever runs the kit vouches for the device and its queue.
-    let outputs = unsafe { conform_on(host, &asked(method), &Options::default(), make) };
-    assert_written(&outputs);
+    let outputs = unsafe { conform_on(host, &asked(case.0)?, &Options::default(), make)? };
+    check_written(&outputs)
 }
 
 /// Every vertex was written, and none is black.
-pub(crate) fn assert_written(outputs: &Outputs) {
-    let colours = outputs[0].chunks_exact(16);
+pub(crate) fn check_written(outputs: &Outputs) -> Result<(), Refusal> {
+    let colours = outputs.iter().take(1).flat_map(|bytes| bytes.chunks_exact(16));
     let lit = colours.filter(|colour| colour[12..] == 1f32.to_le_bytes() && colour[..4] != [0; 4]).count();
-    assert_eq!(lit, VERTICES as usize, "vertices that are lit");
+    match lit == VERTICES as usize {
+        true => Ok(()),
+        false => Err(format!("{lit} of {VERTICES} vertices are lit").into()),
+    }
 }

@@ -1,5 +1,5 @@
 //! A host in C++ builds against both libraries, runs in silence under validation, and lights its mesh.
-
+#![cfg(feature = "relight")]
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 #[path = "../common/mod.rs"]

@@ -5,10 +5,9 @@ use airglow_relight::Relight;
 use airglow_tests::conformance::{HostDevice, Outputs, conform_adopting};
 
 use super::settings;
-use crate::relight::conformance::{Both, assert_written, z_up};
-use crate::world::AirglowWorld;
+use crate::relight::conformance::{Both, Case, check_written, z_up};
 
-fn outputs(case: (u32, bool, Option<&AirglowWorld>)) -> Outputs {
+fn outputs(case: Case<'_>) -> Outputs {
     let requirements = Relight::requirements(&settings(case.0).read().unwrap());
     let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, case);
     conform_adopting(make, &requirements, &Options::default())
@@ -17,7 +16,7 @@ fn outputs(case: (u32, bool, Option<&AirglowWorld>)) -> Outputs {
 #[test]
 fn rust_and_c_give_the_same_bits() {
     let by_image = outputs((0, false, None));
-    assert_written(&by_image);
+    check_written(&by_image).unwrap();
     assert_eq!(outputs((0, true, None)), by_image, "texels of the host give what its image gives");
     assert_eq!(outputs((1, false, None)), by_image, "the fragment method gives what compute gives");
 }
@@ -26,6 +25,6 @@ fn rust_and_c_give_the_same_bits() {
 fn a_host_of_another_world_gets_the_bits_of_the_rust_road() {
     let world = z_up();
     let turned = outputs((0, false, Some(&world)));
-    assert_written(&turned);
+    check_written(&turned).unwrap();
     assert_ne!(turned, outputs((0, false, None)), "the world changes what comes out");
 }

@@ -175,7 +175,7 @@ fn a_bake_of_nonsense_is_refused() {
 
 #[test]
 fn a_device_that_lacks_something_and_texts_that_do_not_fit() {
-    with_host(|host| lacking(host, requirements(&settings(0))));
+    with_host(|host| lacking(host, requirements(&settings(0)).unwrap()));
 }
 
 fn lacking(host: &HostDevice<'_>, asked: *mut AirglowRequirements) {

@@ -1,0 +1,46 @@
+//! What tests of the exported functions share.
+
+use airglow_tests::conformance::HostDevice;
+use airglow_tests::device::{open, stated};
+
+use airglow_gpu::Requirements;
+
+use crate::text::AirglowText;
+
+/// Calls a function with an error at its end, and fails the test with the message.
+macro_rules! call {
+    ($($words:tt)*) => {
+        $crate::conformance::attempt!($($words)*).unwrap()
+    };
+}
+pub(crate) use call;
+
+/// Calls a function with an error at its end, which must be this status; returns the message.
+macro_rules! refused {
+    ($status:ident, $function:path, $($argument:expr),*) => {{
+        let mut error = $crate::conformance::error();
+        // SAFETY: what is refused is refused before it is used.
+        let status = unsafe { $function($($argument,)* &raw mut error) };
+        let said = $crate::conformance::message(&error).to_owned();
+        assert_eq!((status, error.status), (AirglowStatus::$status, AirglowStatus::$status), "{said}");
+        assert!(!said.is_empty(), "{} says nothing", stringify!($function));
+        said
+    }};
+}
+pub(crate) use refused;
+
+/// Runs `test` with a host's device that has what is asked; validation must stay silent.
+pub(crate) fn with_host(asked: &Requirements, test: impl FnOnce(&HostDevice<'_>)) {
+    let open = open(asked);
+    test(&stated(&open, open.device()));
+    let said = open.messages().take();
+    assert!(said.is_empty(), "{said:?}");
+}
+
+/// What a call writes to a text.
+pub(crate) fn text(write: impl Fn(*mut AirglowText)) -> String {
+    let mut bytes = vec![0u8; 1 << 16];
+    let mut text = AirglowText { data: bytes.as_mut_ptr().cast(), capacity: bytes.len(), length: 0 };
+    write(&raw mut text);
+    String::from_utf8(bytes[..text.length].to_vec()).unwrap()
+}
