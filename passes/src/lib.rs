@@ -14,6 +14,8 @@ pub use airglow_math as math;
 pub use airglow_normals as normals;
 #[cfg(feature = "relight")]
 pub use airglow_relight as relight;
+#[cfg(feature = "shadow")]
+pub use airglow_shadow as shadow;
 
 /// The host code of the front page compiles.
 #[cfg(doctest)]
