@@ -21,4 +21,6 @@ pub struct Environment {
     pub pixels: Vec<[f32; 3]>,
     /// World from map: a direction d of the map stands at `rotation * d` in the world.
     pub rotation: Quat,
+    /// Metres of the scene's medium that its light comes through; `None`: it is not seen through the medium.
+    pub distance: Option<f32>,
 }

@@ -45,6 +45,7 @@ fn every_table_arrives() {
         file = "sky.exr"
         rotation = { axis = [1, 0, 0], degrees = 180 }
         scale = 2.0
+        distance = 150
 
         [medium]
         visibility = 391.2
@@ -97,6 +98,7 @@ fn every_table_arrives() {
     let environment = scene.environment.as_ref().unwrap();
     assert_eq!((environment.width, environment.height, environment.pixels[3]), (4, 2, [200.0, 100.0, 0.0]));
     assert!((environment.rotation * Vec3::Y).distance(Vec3::NEG_Y) < 1e-6);
+    assert_eq!(environment.distance, Some(150.0));
     let medium = scene.medium.unwrap();
     assert!((medium.extinction[1] - 0.01).abs() < 1e-5, "{medium:?}: ln 50 / 391.2 is 0.01");
     assert_eq!((medium.albedo, medium.anisotropy), ([0.9; 3], 0.7));
@@ -126,6 +128,7 @@ fn faults_carry_line_and_column() {
         ("[quality]\norder = 7", 1, "order is a whole number from 1 to 6"),
         ("[quality]\nstorage = 'f64'", 2, "unknown variant `f64`"),
         ("[medium]\nextinction = 1\nvisibility = 3", 1, "either extinction (1/m) or visibility (m)"),
+        ("[environment]\nfile = 'sky.exr'\ndistance = -1.0", 3, "-1 found, a number not below 0"),
         ("[medium]\nvisibility = -3.0", 2, "-3 found, a positive number expected"),
         ("[medium]\nvisibility = 3\nanisotropy = 1.0", 3, "from -0.999 to 0.999"),
         ("[medium]\nextinction = [1, -1, 0]", 2, "three of them: [red, green, blue]"),

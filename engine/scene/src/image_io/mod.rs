@@ -39,7 +39,7 @@ pub fn read_image(file: &Path) -> Result<FloatImage, SceneError> {
     decode(file, &files::read(file, MAX_FILE_BYTES)?)
 }
 
-/// Reads an equirectangular environment from `.exr` or `.hdr`, unrotated and unscaled.
+/// Reads an equirectangular environment from `.exr` or `.hdr`, unrotated, unscaled and in clear air.
 ///
 /// # Errors
 /// [`SceneError`] as [`read_image`], and [`SceneError::Radiance`] if a pixel is NaN, infinite or negative.
@@ -52,6 +52,7 @@ pub fn read_environment(file: &Path) -> Result<Environment, SceneError> {
         height: picture.height,
         pixels: picture.pixels,
         rotation: glam::Quat::IDENTITY,
+        distance: None,
     })
 }
 

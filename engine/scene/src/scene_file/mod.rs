@@ -76,6 +76,7 @@ fn build(file: &Path, text: &str, parsed: SceneFile) -> Result<Scene, SceneError
 fn environment(path: &Path, table: &EnvironmentTable) -> Result<Environment, SceneError> {
     let mut environment = read_environment(path)?;
     environment.rotation = table.rotation.0;
+    environment.distance = table.distance.map(|distance| distance.0);
     if let Some(scale) = table.scale {
         environment.pixels.as_flattened_mut().iter_mut().for_each(|value| *value *= scale.0);
         // A large scale may have left the range of f32.

@@ -96,6 +96,7 @@ pub(super) struct EnvironmentTable {
     #[serde(default)]
     pub(super) rotation: Rotation,
     pub(super) scale: Option<NotNegative>,
+    pub(super) distance: Option<NotNegative>,
 }
 
 /// `[medium]`.

@@ -96,7 +96,7 @@ mod tests {
     fn environment(pixels: Vec<[f32; 3]>, width: usize) -> Environment {
         let rotation = Quat::from_rotation_x(0.7) * Quat::from_rotation_y(-2.0);
         let height = pixels.len() / width;
-        Environment { file: "test".into(), width, height, pixels, rotation }
+        Environment { file: "test".into(), width, height, pixels, rotation, distance: None }
     }
 
     #[test]
