@@ -4,8 +4,10 @@ use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{Buffer, Context, GpuError, Label, Location, Recorder};
 use airglow_graph::{Access, BufferDesc};
 use bytemuck::Pod;
+use glam::DVec3;
 
-use crate::RadianceError;
+use super::{Batch, EmitterTriangle, LightShape, TexelBuffers, Texels};
+use crate::{Incident, RadianceError, Triangle, check};
 
 const OWNER: &str = "radiance";
 
@@ -27,12 +29,12 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// [`RadianceError::Gpu`] when the device has no room.
-    pub fn upload<T: Pod + Default>(&self, name: &str, values: &[T]) -> Result<Buffer, RadianceError> {
+    pub fn upload<T: Pod>(&self, name: &str, values: &[T]) -> Result<Buffer, RadianceError> {
         let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::INDIRECT_BUFFER;
         let desc = BufferDesc { size: size_of_val(values).max(size_of::<T>()) as u64, usage };
         let buffer = self.context.create_buffer(Label::new(OWNER, name), &desc, Location::Upload)?;
         match values {
-            [] => buffer.write(0, &[T::default()])?,
+            [] => buffer.write(0, &[T::zeroed()])?,
             values => buffer.write(0, values)?,
         }
         Ok(buffer)
@@ -64,5 +66,54 @@ impl Bench<'_> {
         })?;
         let copy = copy.ok_or_else(|| GpuError::misuse("the bench", "its host did not record the frame"))?;
         Ok(copy.read()?)
+    }
+
+    /// The light of `triangles` at each point.
+    ///
+    /// # Errors
+    /// [`RadianceError::Value`] for a faulty triangle; [`RadianceError::Gpu`] when the device fails.
+    pub fn texels(
+        &self,
+        texels: &Texels,
+        triangles: &[Triangle],
+        points: &[DVec3],
+    ) -> Result<Vec<Incident>, RadianceError> {
+        check(triangles)?;
+        let packed: Vec<EmitterTriangle> = triangles.iter().map(EmitterTriangle::from).collect();
+        let positions: Vec<[f32; 4]> = points.iter().map(|p| p.extend(0.0).as_vec4().to_array()).collect();
+        let shape = texels.settings().shape;
+        let lights = self.scratch("lights", shape.light_bytes(points.len()))?;
+        let gradients = self.scratch("gradients", shape.gradient_bytes(points.len()))?;
+        let buffers = TexelBuffers {
+            batch: (&self.upload("batch", &[Batch::new(0, points.len() as u32)])?).into(),
+            points: (&self.upload("points", &positions)?).into(),
+            triangles: (&self.upload("triangles", &packed)?).into(),
+            triangle_count: triangles.len() as u32,
+            lights: (&lights).into(),
+            gradients: (&gradients).into(),
+        };
+        (self.run)(&mut |recorder| texels.record(recorder, &buffers))?;
+        self.incidents(shape, points.len(), &lights, &gradients)
+    }
+
+    /// What so many samples hold, once kernels have written them.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn incidents(
+        &self,
+        shape: LightShape,
+        samples: usize,
+        lights: &Buffer,
+        gradients: &Buffer,
+    ) -> Result<Vec<Incident>, RadianceError> {
+        let lights: Vec<[f32; 4]> = self.read(lights)?;
+        let gradients: Vec<[f32; 4]> = self.read(gradients)?;
+        let (stride, gradient_stride) = (shape.stride(), shape.gradient_stride());
+        let sample = |i: usize| {
+            let gradients = &gradients[i * gradient_stride..(i + 1) * gradient_stride];
+            shape.incident(&lights[i * stride..(i + 1) * stride], gradients)
+        };
+        (0..samples).map(sample).collect()
     }
 }

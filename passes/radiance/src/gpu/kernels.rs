@@ -1,0 +1,57 @@
+//! The sampling kernels of this room and their bindings, stated once.
+
+use airglow_gpu::{BindingDesc, BindingKind};
+use bytemuck::{Pod, Zeroable};
+
+use super::{LightShape, words};
+use crate::RadianceError;
+
+macro_rules! rays {
+    ($before:literal) => {
+        [
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, ".RAYS1.spv")).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, ".RAYS2.spv")).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, ".RAYS4.spv")).as_slice(),
+        ]
+    };
+}
+
+/// By gradients, order from 3 on, rays 1, 2 and 4.
+static TEXELS: [[[&[u8]; 3]; 4]; 2] = [
+    [rays!("texels.ORDER3"), rays!("texels.ORDER4"), rays!("texels.ORDER5"), rays!("texels.ORDER6")],
+    [
+        rays!("texels.GRADIENTS.ORDER3"),
+        rays!("texels.GRADIENTS.ORDER4"),
+        rays!("texels.GRADIENTS.ORDER5"),
+        rays!("texels.GRADIENTS.ORDER6"),
+    ],
+];
+
+const fn storage(binding: u32) -> BindingDesc {
+    BindingDesc::new(binding, BindingKind::StorageBuffer)
+}
+
+/// Bindings of `texels.comp`: batch, points, triangles, solid angles, lights, and gradients where there are any.
+pub const TEXEL_BINDINGS: [BindingDesc; 6] =
+    [storage(0), storage(1), storage(2), storage(3), storage(4), storage(5)];
+
+/// `Settings` of `texels.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct TexelConstants {
+    /// Triangles in the buffer.
+    pub triangle_count: u32,
+    /// Texels along a side of a face.
+    pub size: u32,
+}
+
+/// The kernel of a shape and number of rays.
+pub(super) fn texels(shape: LightShape, rays: u32) -> Result<Vec<u32>, RadianceError> {
+    let orders = &TEXELS[usize::from(shape.gradients)];
+    let order = shape.order.checked_sub(3).and_then(|place| orders.get(place));
+    let kernels = order.ok_or_else(|| RadianceError::setting("order", shape.order, "3 to 6 on a device"))?;
+    match rays {
+        1 | 2 | 4 => Ok(words(kernels[rays.ilog2() as usize])),
+        _ => Err(RadianceError::setting("rays", rays, "1, 2 or 4 along a side of a texel")),
+    }
+}

@@ -1,0 +1,116 @@
+//! Cube maps by one kernel: a texel of a tile an invocation, triangles in a buffer.
+
+use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::{
+    Binding, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context, GpuError, Label, Location,
+    Recorder, Requirements,
+};
+use airglow_graph::BufferDesc;
+use airglow_math::sphere::cube::SolidAngles;
+
+use super::LightShape;
+use super::kernels::{self, TEXEL_BINDINGS, TexelConstants};
+use crate::RadianceError;
+
+/// How finely samples see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TexelSettings {
+    /// What samples hold.
+    pub shape: LightShape,
+    /// Texels along a side of a face: a multiple of 8, up to 128.
+    pub size: u32,
+    /// Rays along a side of a texel: 1, 2 or 4.
+    pub rays: u32,
+}
+
+/// The buffers of one dispatch.
+#[derive(Clone)]
+pub struct TexelBuffers {
+    /// A [`Batch`](super::Batch), of usage `INDIRECT_BUFFER`, too.
+    pub batch: BufferSlice,
+    /// Where samples are taken: a vec4 each, metres, the fourth component unused.
+    pub points: BufferSlice,
+    /// [`EmitterTriangle`](super::EmitterTriangle)s.
+    pub triangles: BufferSlice,
+    /// How many of them.
+    pub triangle_count: u32,
+    /// Takes the light of each sample, as [`LightShape`] says.
+    pub lights: BufferSlice,
+    /// Takes the gradients; not touched where the shape has none.
+    pub gradients: BufferSlice,
+}
+
+/// Samples emitters that hide one another, by cube maps that are never stored.
+#[derive(Clone)]
+pub struct Texels {
+    settings: TexelSettings,
+    pipeline: ComputePipeline,
+    solid_angles: Buffer,
+}
+
+impl Texels {
+    /// What a device must offer.
+    #[must_use]
+    pub fn requirements() -> Requirements {
+        Requirements::engine().with_descriptors(&TEXEL_BINDINGS)
+    }
+
+    /// Makes kernel and table.
+    ///
+    /// # Errors
+    /// [`RadianceError::Setting`] for settings without kernel; [`RadianceError::Gpu`] when the device refuses.
+    pub fn new(context: &Context, settings: TexelSettings) -> Result<Self, RadianceError> {
+        let TexelSettings { shape, size, rays } = settings;
+        if !(8..=128).contains(&size) || !size.is_multiple_of(8) {
+            return Err(RadianceError::setting("face size", size, "a multiple of 8 texels, 8 to 128"));
+        }
+        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
+            name: "radiance texels",
+            spirv: &kernels::texels(shape, rays)?,
+            bindings: &TEXEL_BINDINGS[..5 + usize::from(shape.gradients)],
+            push_constant_size: size_of::<TexelConstants>() as u32,
+        })?;
+        let solid_angles = solid_angles(context, size as usize)?;
+        Ok(Self { settings, pipeline, solid_angles })
+    }
+
+    /// The settings it was made for.
+    #[must_use]
+    pub fn settings(&self) -> &TexelSettings {
+        &self.settings
+    }
+
+    /// Records one dispatch, as large as the batch says, without barriers: what its buffers hold must be visible to
+    /// compute shaders, and the batch to indirect commands.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for buffers that do not fit.
+    pub fn record(&self, recorder: &mut Recorder<'_>, buffers: &TexelBuffers) -> Result<(), GpuError> {
+        let slices = [
+            &buffers.batch,
+            &buffers.points,
+            &buffers.triangles,
+            &(&self.solid_angles).into(),
+            &buffers.lights,
+            &buffers.gradients,
+        ];
+        let bound = [0, 1, 2, 3, 4, 5].map(|i| Binding::storage(i as u32, slices[i].clone()));
+        recorder.bind_compute(&self.pipeline, &bound[..5 + usize::from(self.settings.shape.gradients)])?;
+        recorder.push_constants(&TexelConstants {
+            triangle_count: buffers.triangle_count,
+            size: self.settings.size,
+        })?;
+        recorder.dispatch_indirect(buffers.batch.clone())
+    }
+}
+
+/// Exact solid angles of a face's texels, row by row.
+fn solid_angles(context: &Context, size: usize) -> Result<Buffer, RadianceError> {
+    let exact = SolidAngles::new(size)?;
+    let texel = |i: usize| Ok(exact.get(i % size, i / size)? as f32);
+    let values: Vec<f32> = (0..size * size).map(texel).collect::<Result<_, RadianceError>>()?;
+    let desc = BufferDesc { size: size_of_val(&values[..]) as u64, usage: BufferUsageFlags::STORAGE_BUFFER };
+    let buffer = context.create_buffer(Label::new("radiance", "solid angles"), &desc, Location::Upload)?;
+    buffer.write(0, &values)?;
+    Ok(buffer)
+}

@@ -1,0 +1,97 @@
+// A sample's sums, over the texels of an invocation first, then over the invocations of its workgroup.
+//
+// The includer defines ORDER, GRADIENTS and has a workgroup of LANES invocations, and buffers that these write to:
+// SAMPLE_LIGHT(i) and SAMPLE_GRADIENT(i), the sample's vec4.
+
+#ifndef RADIANCE_SUMS_GLSL
+#define RADIANCE_SUMS_GLSL
+
+#include "common/sh_basis.glsl"
+#include "radiance/sample.glsl"
+#if GRADIENTS
+#include "radiance/slope.glsl"
+#endif
+
+#define LANES 64
+#define ELEMENTS (LIGHT_STRIDE + GRADIENTS * GRADIENT_STRIDE)
+
+// What a texel sends, means over its rays.
+struct Texel {
+    vec3 direction; // unit, to the middle of what emits in it
+    float solid_angle;
+    vec3 radiance;
+    float covered; // part of the texel that emits
+    vec3 slope; // radiance over distance
+    float nearness; // 1 / distance where it emits
+#if GRADIENTS
+    vec3 tilt[3]; // slope times x, y and z of the normal over its product with the unit ray
+#endif
+};
+
+void sums_clear(out vec4 sums[ELEMENTS])
+{
+    [[unroll]] for (int i = 0; i < ELEMENTS; ++i) { sums[i] = vec4(0.0); }
+}
+
+// Gradients: a patch of area dA at s from the point, of normal n, sends L Y(s/|s|) n.s / |s|^3 dA; moving the point is
+// moving s the other way (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for Mid-Range Illumination", 2004).
+void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
+{
+    float basis[COEFFICIENTS];
+    sh_evaluate(texel.direction, basis);
+    vec3 power = texel.solid_angle * texel.radiance;
+    vec3 slope = texel.solid_angle * texel.slope;
+    [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) { sums[i].rgb += basis[i] * power; }
+    sums[LIGHT_EXTENT].xy += texel.solid_angle * vec2(texel.covered, texel.nearness);
+    sums[LIGHT_SLOPE].rgb += slope;
+#if GRADIENTS
+    vec3 slopes[COEFFICIENTS];
+    sh_slopes(texel.direction, basis, slopes);
+    vec3 change[3];
+    [[unroll]] for (int k = 0; k < 3; ++k) {
+        change[k] = 3.0 * texel.direction[k] * slope - texel.solid_angle * texel.tilt[k];
+    }
+    [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) {
+        [[unroll]] for (int k = 0; k < 3; ++k) {
+            sums[LIGHT_STRIDE + 3 * i + k].rgb += basis[i] * change[k] - slopes[i][k] * slope;
+        }
+    }
+#endif
+}
+
+// Elements summed at a time, and the runs that each of them is summed in.
+#define SUMS_BLOCK 16
+#define SUMS_RUNS (LANES / SUMS_BLOCK)
+shared vec4 sums_block[SUMS_BLOCK * LANES];
+
+// The same order of additions every time: runs of neighbouring lanes, then the runs.
+void sums_write(vec4 sums[ELEMENTS], uint lane)
+{
+    [[unroll]] for (int first = 0; first < ELEMENTS; first += SUMS_BLOCK) {
+        [[unroll]] for (int i = 0; i < SUMS_BLOCK; ++i) {
+            if (first + i < ELEMENTS) { sums_block[i * LANES + int(lane)] = sums[min(first + i, ELEMENTS - 1)]; }
+        }
+        barrier();
+        uint element = lane % SUMS_BLOCK;
+        uint run = lane / SUMS_BLOCK;
+        vec4 total = vec4(0.0);
+        for (uint i = 0u; i < uint(LANES / SUMS_RUNS); ++i) {
+            total += sums_block[element * LANES + run * (LANES / SUMS_RUNS) + i];
+        }
+        barrier();
+        sums_block[element * SUMS_RUNS + run] = total;
+        barrier();
+        uint index = uint(first) + lane;
+        if (lane < SUMS_BLOCK && index < uint(ELEMENTS)) {
+            total = sums_block[lane * SUMS_RUNS];
+            for (uint i = 1u; i < SUMS_RUNS; ++i) { total += sums_block[lane * SUMS_RUNS + i]; }
+            if (index < uint(LIGHT_STRIDE)) { SAMPLE_LIGHT(index) = total; }
+#if GRADIENTS
+            else { SAMPLE_GRADIENT(index - uint(LIGHT_STRIDE)) = total; }
+#endif
+        }
+        barrier();
+    }
+}
+
+#endif
