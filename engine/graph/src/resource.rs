@@ -87,6 +87,7 @@ fn texel_bytes(format: vk::Format) -> Option<u32> {
         F::R8_UNORM | F::R8_UINT | F::S8_UINT => 1,
         F::R8G8_UNORM | F::R16_SFLOAT | F::R16_UNORM | F::R16_UINT | F::D16_UNORM => 2,
         F::R8G8B8A8_UNORM
+        | F::R8G8B8A8_SNORM
         | F::R8G8B8A8_SRGB
         | F::R8G8B8A8_UINT
         | F::B8G8R8A8_UNORM

@@ -9,7 +9,7 @@ mod common;
 use std::time::Instant;
 
 use airglow_gpu::{GpuError, Recorder, Requirements};
-use airglow_normals::{Bench, FitSettings, NormalsError};
+use airglow_normals::{Bench, FitSettings, NormalsError, Settings};
 use airglow_tests::device::fixture_with;
 
 const SIDE: usize = 1024;
@@ -26,9 +26,9 @@ fn main() -> Result<(), NormalsError> {
         // Steps cost alike: what two counts of them differ by is theirs, the rest is seeding, transfer and compilation.
         let mut seconds = [0.0; 2];
         for (iterations, seconds) in [8, 16].into_iter().zip(&mut seconds) {
-            let settings = FitSettings { lobes, iterations, ..Default::default() };
+            let fit = FitSettings { lobes, iterations, ..Default::default() };
             let begin = Instant::now();
-            bench.build(&map, &settings, u64::MAX)?;
+            bench.texture(&map, &Settings { fit, ..Default::default() })?;
             *seconds = begin.elapsed().as_secs_f64();
             let texel = 1e9 * *seconds / (SIDE * SIDE) as f64;
             println!("{lobes} lobes, {iterations} steps: {seconds:.2} s, {texel:.0} ns a texel of the map");

@@ -1,25 +1,25 @@
 //! Kernels run one frame at a time, submitted and waited for by a host: what tests and evaluation use.
 
-use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout, ImageViewType};
 use airglow_gpu::{
-    Binding, Buffer, ComputePipeline, ComputePipelineDesc, Context, GpuError, Label, Location, Recorder,
+    Buffer, ComputePipelineDesc, Context, GpuError, Label, Location, Readback, Recorder, ViewDesc,
 };
-use airglow_graph::{Access, BufferDesc};
+use airglow_graph::{Access, BufferDesc, ImageDesc, State};
 use bytemuck::Pod;
 
 use crate::NormalsError;
 use crate::brdf::{Brdf, Directions};
-use crate::chain::{self, MOST_ITERATIONS};
-use crate::fit::FitSettings;
-use crate::kernels::{self, BINDINGS, FitConstants, RowConstants};
+use crate::build::{Build, LobeTexture};
+use crate::kernels::{self, BINDINGS, RowConstants};
 use crate::map::NormalMap;
 use crate::mixture::{MAX_LOBES, WeightedLobe};
+use crate::normals::Normals;
+use crate::settings::Settings;
+use crate::stage::{Resource, dispatch};
 
-/// Invocations of a workgroup of both kernels.
-const GROUP: usize = 64;
 /// Rows of one dispatch: 32 MiB, below the least storage-buffer range of any device.
 const ROWS: usize = 1 << 18;
-const OWNER: &str = "normals";
+const OWNER: &str = "normals bench";
 
 /// Records what it is given into one frame of the bench's context, submits it and waits until it is done.
 pub type Run<'a> =
@@ -80,69 +80,117 @@ impl Bench<'_> {
     /// [`NormalsError::Range`] for a material out of range, [`NormalsError::Gpu`].
     pub fn radiance(&self, rows: &[Row]) -> Result<Vec<f32>, NormalsError> {
         rows.iter().try_for_each(|row| row.brdf.check())?;
-        let pipeline = self.pipeline("normals rows", &kernels::rows(), size_of::<u32>())?;
+        let pipeline = self.context.create_compute_pipeline(&ComputePipelineDesc {
+            name: "normals rows",
+            spirv: &kernels::rows(),
+            bindings: &BINDINGS,
+            push_constant_size: size_of::<u32>() as u32,
+        })?;
         let mut radiance = Vec::with_capacity(rows.len());
         for rows in rows.chunks(ROWS) {
             let constants: Vec<RowConstants> = rows.iter().map(Row::constants).collect();
             let input = self.upload("rows", &constants)?;
             let output = self.scratch("radiance", 4 * rows.len())?;
-            radiance.extend(self.dispatch::<_, f32>(
-                &pipeline,
-                &input,
-                &output,
-                rows.len(),
-                &(rows.len() as u32),
-            )?);
+            let count = rows.len();
+            self.frame(&mut |recorder| {
+                dispatch(recorder, &pipeline, [&input, &output], &(count as u32), count)
+            })?;
+            radiance.extend(self.read::<f32>(&output)?);
         }
         Ok(radiance)
     }
 
-    /// The chain of a map, finest level first, without the map itself.
+    /// The lobes of a map's levels in f32, finest level first, in the order of their neighbours'.
     ///
     /// # Errors
-    /// [`NormalsError::Range`] for settings without kernel, [`NormalsError::Budget`], [`NormalsError::Gpu`].
-    pub fn build(
-        &self,
-        map: &NormalMap,
-        fit: &FitSettings,
-        budget: u64,
-    ) -> Result<Vec<LevelLobes>, NormalsError> {
-        if fit.iterations > MOST_ITERATIONS {
-            let (what, value) = ("the number of iterations", fit.iterations as f64);
-            return Err(NormalsError::Range { what, value, range: "0 to 32 on a device" });
-        }
-        let levels = chain::levels(map, fit, budget)?;
-        let pipeline = self.pipeline("normals fit", &kernels::fit(fit.lobes)?, size_of::<FitConstants>())?;
-        let normals: Vec<[f32; 4]> =
-            map.normals().iter().map(|n| n.extend(1.0).as_vec4().to_array()).collect();
-        let mut sources = vec![self.upload("normals", &normals)?];
-        let mut built = Vec::with_capacity(levels.len());
-        for level in levels {
-            let texels = level.size[0] * level.size[1];
-            let output = self.scratch("lobes", texels * fit.lobes * size_of::<[f32; 4]>())?;
-            let constants = FitConstants {
-                fine: map.size(level.source).map(|size| size as u32),
-                size: level.size.map(|size| size as u32),
-                per_texel: if level.source == 0 { 1 } else { fit.lobes as u32 },
-                iterations: fit.iterations as u32,
-                sharpest: fit.sharpest as f32,
-                unused: 0,
-            };
-            let lobes = self.dispatch(&pipeline, &sources[level.source], &output, texels, &constants)?;
-            built.push(LevelLobes { size: level.size, lobes });
-            sources.push(output);
+    /// As [`Normals::new`] and [`Normals::build`].
+    pub fn build(&self, map: &NormalMap, settings: &Settings) -> Result<Vec<LevelLobes>, NormalsError> {
+        let mut build = Normals::new(self.context, *settings)?.build(self.context, map)?;
+        self.steps(&mut build)?;
+        let mut built = Vec::with_capacity(build.levels().len());
+        for level in build.levels() {
+            let Some(buffer) = build.buffer(Resource::Lobes(level.level)) else { continue };
+            built.push(LevelLobes { size: level.size, lobes: self.read(buffer)? });
         }
         Ok(built)
     }
 
-    fn pipeline(&self, name: &str, spirv: &[u32], constants: usize) -> Result<ComputePipeline, GpuError> {
-        let push_constant_size = constants as u32;
-        self.context.create_compute_pipeline(&ComputePipelineDesc {
-            name,
-            spirv,
-            bindings: &BINDINGS,
-            push_constant_size,
-        })
+    /// The texture of a map, done. None for a map of one texel.
+    ///
+    /// # Errors
+    /// As [`Bench::build`].
+    pub fn texture(&self, map: &NormalMap, settings: &Settings) -> Result<Option<LobeTexture>, NormalsError> {
+        let mut build = Normals::new(self.context, *settings)?.build(self.context, map)?;
+        self.steps(&mut build)?;
+        Ok(build.texture().cloned())
+    }
+
+    /// The bytes of each mip of a texture, layer by layer.
+    ///
+    /// # Errors
+    /// [`NormalsError::Gpu`].
+    pub fn bytes(&self, texture: &LobeTexture) -> Result<Vec<Vec<u8>>, NormalsError> {
+        let image = &texture.image;
+        let ImageDesc { mips, layers, .. } = *image.desc();
+        let mut copies = Vec::new();
+        self.frame(&mut |recorder| {
+            recorder.transition(image, Access::FragmentSampled, Access::TransferSource)?;
+            for base_mip in 0..mips {
+                let dimension = ImageViewType::TYPE_2D_ARRAY;
+                let desc = ViewDesc { dimension, base_mip, mips: 1, base_layer: 0, layers };
+                copies.push(recorder.read_back_image(&image.view(desc)?)?);
+            }
+            recorder.transition(image, Access::TransferSource, Access::FragmentSampled)
+        })?;
+        Ok(copies.iter().map(Readback::read).collect::<Result<_, _>>()?)
+    }
+
+    /// Takes the steps of a build, each in a frame of its own.
+    fn steps(&self, build: &mut Build) -> Result<(), NormalsError> {
+        let texture = build.texture().cloned();
+        for stage in build.take(usize::MAX) {
+            let copies = stage.accesses().iter().any(|(resource, _)| *resource == Resource::Texture);
+            let image = texture.as_ref().filter(|_| copies).map(|texture| &texture.image);
+            self.frame(&mut |recorder| {
+                let storage = Access::ComputeStorageReadWrite;
+                recorder.memory_barrier(storage, if copies { Access::TransferSource } else { storage })?;
+                if let Some(image) = image {
+                    let fresh = State::idle(ImageLayout::UNDEFINED);
+                    recorder.transition(image, fresh, Access::TransferDestination)?;
+                }
+                stage.record(recorder)?;
+                let Some(image) = image else { return Ok(()) };
+                recorder.transition(image, Access::TransferDestination, Access::FragmentSampled)
+            })?;
+        }
+        Ok(())
+    }
+
+    /// One frame, whose host must have recorded it.
+    fn frame(
+        &self,
+        record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>,
+    ) -> Result<(), NormalsError> {
+        let mut recorded = false;
+        (self.run)(&mut |recorder| {
+            recorded = true;
+            record(recorder)
+        })?;
+        if recorded {
+            return Ok(());
+        }
+        Err(GpuError::misuse("the bench", "its host did not record the frame").into())
+    }
+
+    /// What a buffer holds.
+    fn read<T: Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, NormalsError> {
+        let mut copy = None;
+        self.frame(&mut |recorder| {
+            recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::TransferSource)?;
+            copy = Some(recorder.read_back_buffer(buffer)?);
+            Ok(())
+        })?;
+        Ok(copy.as_ref().map(Readback::read).transpose()?.unwrap_or_default())
     }
 
     fn upload<T: Pod>(&self, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
@@ -156,26 +204,5 @@ impl Bench<'_> {
         let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_SRC;
         let desc = BufferDesc { size: bytes as u64, usage };
         self.context.create_buffer(Label::new(OWNER, name), &desc, Location::Device)
-    }
-
-    /// Runs one dispatch of `count` invocations and reads what it wrote.
-    fn dispatch<C: Pod, T: Pod>(
-        &self,
-        pipeline: &ComputePipeline,
-        input: &Buffer,
-        output: &Buffer,
-        count: usize,
-        constants: &C,
-    ) -> Result<Vec<T>, GpuError> {
-        let mut copy = None;
-        (self.run)(&mut |recorder| {
-            recorder.bind_compute(pipeline, &[Binding::storage(0, input), Binding::storage(1, output)])?;
-            recorder.push_constants(constants)?;
-            recorder.dispatch([count.div_ceil(GROUP) as u32, 1, 1])?;
-            recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
-            copy = Some(recorder.read_back_buffer(output)?);
-            Ok(())
-        })?;
-        copy.ok_or_else(|| GpuError::misuse("the bench", "its host did not record the frame"))?.read()
     }
 }

@@ -11,6 +11,7 @@ use crate::fit::FitSettings;
 use crate::map::NormalMap;
 use crate::mixture::WeightedLobe;
 use crate::reference;
+use crate::settings::Settings;
 
 /// Lobes of the default method.
 const DEFAULT_LOBES: usize = 4;
@@ -73,8 +74,8 @@ pub fn texels(
         places.entry(rows[place].lobes).or_default().push(place);
     }
     for (lobes, places) in places {
-        let settings = FitSettings { lobes, ..Default::default() };
-        let levels = bench.build(map, &settings, u64::MAX)?;
+        let fit = FitSettings { lobes, ..Default::default() };
+        let levels = bench.build(map, &Settings { fit, budget: Some(u64::MAX), ..Default::default() })?;
         let shaded = places.iter().map(|&place| rows[place].shaded(map, &levels));
         let shaded: Vec<Row> = shaded.collect::<Result<_, _>>()?;
         for (place, value) in places.into_iter().zip(bench.radiance(&shaded)?) {

@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::NormalsError;
 use crate::mixture::MAX_LOBES;
+use crate::storage::Storage;
 
 static FIT: [(usize, &[u8]); 4] = [
     (1, include_bytes!("../../../shaders/spirv/normals/fit.LOBES1.spv").as_slice()),
@@ -12,9 +13,17 @@ static FIT: [(usize, &[u8]); 4] = [
     (4, include_bytes!("../../../shaders/spirv/normals/fit.LOBES4.spv").as_slice()),
     (6, include_bytes!("../../../shaders/spirv/normals/fit.LOBES6.spv").as_slice()),
 ];
+static ALIGN: [(usize, &[u8]); 3] = [
+    (2, include_bytes!("../../../shaders/spirv/normals/align.LOBES2.spv").as_slice()),
+    (4, include_bytes!("../../../shaders/spirv/normals/align.LOBES4.spv").as_slice()),
+    (6, include_bytes!("../../../shaders/spirv/normals/align.LOBES6.spv").as_slice()),
+];
+static PACK_F16: &[u8] = include_bytes!("../../../shaders/spirv/normals/pack.f16.spv").as_slice();
+static PACK_SNORM8: &[u8] = include_bytes!("../../../shaders/spirv/normals/pack.snorm8.spv").as_slice();
 static ROWS: &[u8] = include_bytes!("../../../shaders/spirv/normals/rows.spv").as_slice();
 
-/// Bindings of `fit.comp`, samples and lobes, and of `rows.comp`, rows and radiance.
+/// Bindings of every kernel of this room: what it reads and what it writes. `fit.comp`: samples, lobes. `align.comp`:
+/// coarser lobes, lobes. `pack.comp`: lobes, packed lobes. `rows.comp`: rows, radiance.
 pub const BINDINGS: [BindingDesc; 2] =
     [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::StorageBuffer)];
 
@@ -32,8 +41,28 @@ pub struct FitConstants {
     pub iterations: u32,
     /// The sharpest lobe while fitting.
     pub sharpest: f32,
-    /// Rounds the block up to its alignment; 0.
-    pub unused: u32,
+    /// The texel of the first invocation.
+    pub first: u32,
+}
+
+/// `Settings` of `align.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct AlignConstants {
+    /// Columns and rows of the coarser level.
+    pub coarse_size: [u32; 2],
+    /// Columns and rows of the level that is put in order.
+    pub size: [u32; 2],
+}
+
+/// `Settings` of `pack.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PackConstants {
+    /// Texels of the level.
+    pub texels: u32,
+    /// Lobes of a texel.
+    pub lobes: u32,
 }
 
 /// `Row` of `rows.comp`.
@@ -56,6 +85,18 @@ pub(crate) fn fit(lobes: usize) -> Result<Vec<u32>, NormalsError> {
     let found = FIT.iter().find(|(count, _)| *count == lobes).map(|(_, bytes)| words(bytes));
     let (what, range) = ("the number of lobes", "1, 2, 4 or 6");
     found.ok_or(NormalsError::Range { what, value: lobes as f64, range })
+}
+
+/// The kernel that puts so many lobes in order; there is none for one.
+pub(crate) fn align(lobes: usize) -> Option<Vec<u32>> {
+    ALIGN.iter().find(|(count, _)| *count == lobes).map(|(_, bytes)| words(bytes))
+}
+
+pub(crate) fn pack(storage: Storage) -> Vec<u32> {
+    match storage {
+        Storage::F16 => words(PACK_F16),
+        Storage::Snorm8 => words(PACK_SNORM8),
+    }
 }
 
 pub(crate) fn rows() -> Vec<u32> {

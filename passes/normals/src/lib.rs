@@ -23,7 +23,9 @@
 
 pub mod bench;
 mod brdf;
+mod build;
 pub mod chain;
+mod declare;
 mod error;
 pub mod eval;
 mod fit;
@@ -31,15 +33,24 @@ mod harmonics;
 pub mod kernels;
 mod map;
 mod mixture;
+mod normals;
 pub mod reference;
 pub mod rivals;
+mod settings;
 pub mod shade;
+mod stage;
+mod storage;
 pub mod vmf;
 
 pub use bench::Bench;
 pub use brdf::{Brdf, Directions};
+pub use build::{Build, LobeTexture, Progress};
 pub use error::NormalsError;
 pub use fit::{FitSettings, fit, fit_from};
 pub use harmonics::{Harmonics, band_factors};
 pub use map::{NormalMap, Sample};
 pub use mixture::{MAX_LOBES, Mixture, WeightedLobe};
+pub use normals::Normals;
+pub use settings::Settings;
+pub use stage::{Resource, Stage};
+pub use storage::Storage;

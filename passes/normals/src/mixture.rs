@@ -10,6 +10,15 @@ use crate::map::Sample;
 /// Lobes that a mixture may have.
 pub const MAX_LOBES: usize = 6;
 
+/// Turns in which each lobe looks for a better place.
+const SWEEPS: usize = 4;
+/// An empty place without a trace is for what is farther than this from all others, a variance.
+const APART: f64 = 1e-4;
+/// What the lobe of a place weighs while others are sorted into it.
+const PRESENCE: f64 = 0.1;
+/// The weight that an empty place keeps of the coarser lobe, so that finer texels know whose place it is.
+const TRACE: f64 = 1e-6;
+
 /// A share of the normals with their weighted mean. Adding, averaging and interpolating both is exact: the lobe then
 /// has the mean of all normals that it stands for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,6 +34,16 @@ impl WeightedLobe {
     #[must_use]
     pub fn mean(&self) -> DVec3 {
         if self.weight > 0.0 { self.moment / self.weight } else { DVec3::ZERO }
+    }
+
+    /// Weight times squared length of the mean: what a sum of lobes loses of it is spread.
+    fn narrowness(&self) -> f64 {
+        if self.weight > 0.0 { self.moment.length_squared() / self.weight } else { 0.0 }
+    }
+
+    /// The sum with a lobe, or the difference from it.
+    fn plus(&self, lobe: &Self, sign: f64) -> Self {
+        Self { weight: self.weight + sign * lobe.weight, moment: self.moment + sign * lobe.moment }
     }
 
     /// `(x, y, z, w)` as textures hold it: moment and weight in f32.
@@ -87,25 +106,49 @@ impl Mixture {
         Self { lobes: (0..self.lobes.len().max(other.lobes.len())).map(mixed).collect() }
     }
 
-    /// The same lobes in the order that is nearest to `other`'s, of equally many: over all orders, the sum over j of
-    /// `w_j W_j |m_j - M_j|^2` is least, so that interpolation widens lobes as little as it can.
+    /// The same lobes in the places of `other`'s, of equally many, for interpolation between the two and between all that
+    /// have the places of `other`.
+    ///
+    /// Lobes of one place become one: where there are fewer modes than in `other`, lobes that differ little share a
+    /// place rather than take that of a mode which is not theirs. Places are chosen so that the mixture halfway stays as
+    /// narrow as it can: the sum over places of `|M|^2 / W` of all that lies there is most, as far as exchanging lobes
+    /// one by one finds (Hartigan, "Clustering Algorithms", 1975). A place that stays empty keeps 1e-6 of `other`'s lobe.
     #[must_use]
     pub fn aligned_to(&self, other: &Self) -> Self {
         let count = self.lobes.len();
         if count != other.lobes.len() {
             return self.clone();
         }
-        let cost =
-            |a: &WeightedLobe, b: &WeightedLobe| a.weight * b.weight * (a.mean() - b.mean()).length_squared();
-        let mut order: Vec<usize> = (0..count).collect();
-        let mut best = (f64::INFINITY, order.clone());
-        permute(&mut order, 0, &mut |order| {
-            let total: f64 = order.iter().zip(&other.lobes).map(|(&i, b)| cost(&self.lobes[i], b)).sum();
-            if total < best.0 {
-                best = (total, order.to_vec());
+        let scaled = |lobe: &WeightedLobe, weight: f64| match lobe.weight > 0.0 {
+            true => WeightedLobe { weight, moment: weight * lobe.mean() },
+            false => WeightedLobe::default(),
+        };
+        let mut filled: Vec<_> = other.lobes.iter().map(|lobe| scaled(lobe, PRESENCE)).collect();
+        let mut places: Vec<Option<usize>> = vec![None; count];
+        for _ in 0..SWEEPS {
+            for (lobe, place) in self.lobes.iter().zip(&mut places) {
+                if let Some(old) = *place {
+                    filled[old] = filled[old].plus(lobe, -1.0);
+                }
+                let gain = |to: &WeightedLobe| {
+                    let apart = if to.weight <= 0.0 { APART * lobe.weight } else { 0.0 };
+                    to.plus(lobe, 1.0).narrowness() - to.narrowness() - apart
+                };
+                let gains: Vec<f64> = filled.iter().map(gain).collect();
+                let best = (1..count).fold(0, |best, j| if gains[j] > gains[best] { j } else { best });
+                filled[best] = filled[best].plus(lobe, 1.0);
+                *place = Some(best);
             }
-        });
-        Self { lobes: best.1.iter().map(|&i| self.lobes[i]).collect() }
+        }
+        let mut lobes = vec![WeightedLobe::default(); count];
+        for (lobe, place) in self.lobes.iter().zip(places) {
+            let place = place.unwrap_or_default();
+            lobes[place] = lobes[place].plus(lobe, 1.0);
+        }
+        for (lobe, coarse) in lobes.iter_mut().zip(&other.lobes).filter(|(lobe, _)| lobe.weight <= TRACE) {
+            *lobe = scaled(coarse, TRACE);
+        }
+        Self { lobes }
     }
 }
 
@@ -115,17 +158,4 @@ pub(crate) fn check_count(count: usize) -> Result<(), NormalsError> {
         return Ok(());
     }
     Err(NormalsError::Range { what: "the number of lobes", value: count as f64, range: "1 to 6" })
-}
-
-/// Visits every order of the items from `place` on.
-fn permute(items: &mut [usize], place: usize, visit: &mut impl FnMut(&[usize])) {
-    if place + 1 >= items.len() {
-        visit(items);
-        return;
-    }
-    for other in place..items.len() {
-        items.swap(place, other);
-        permute(items, place + 1, visit);
-        items.swap(place, other);
-    }
 }

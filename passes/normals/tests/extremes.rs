@@ -236,6 +236,12 @@ fn the_same_samples_give_the_same_bits() {
     assert_eq!(fit(&footprint, &four()).unwrap(), fit(&footprint, &four()).unwrap());
 }
 
+/// Four lobes that all are lobe `which` of a mixture.
+fn lobes_of(mixture: &Mixture, which: usize) -> Vec<WeightedLobe> {
+    let mean = mixture.lobes()[which].mean();
+    vec![WeightedLobe { weight: 0.25, moment: 0.25 * mean }; 4]
+}
+
 #[test]
 fn aligned_lobes_interpolate_like_with_like() {
     let map = common::weave(64);
@@ -252,4 +258,8 @@ fn aligned_lobes_interpolate_like_with_like() {
     let mean = |mixture: &Mixture| mixture.lobes().iter().map(|l| l.moment).sum::<DVec3>();
     let expected = mean(&left).lerp(mean(&right), 0.5);
     assert!((mean(&left.mix(&aligned, 0.5)) - expected).length() < 1e-14);
+    // Of fewer modes than places, each lies in its own, and the places of the others keep a trace.
+    let first = Mixture::new(lobes_of(&right, 1)).unwrap().aligned_to(&right);
+    assert!((first.lobes()[1].weight - 1.0).abs() < 1e-12, "{first:?}");
+    assert!(first.lobes()[0].mean().distance(right.lobes()[0].mean()) < 1e-9, "{first:?}");
 }

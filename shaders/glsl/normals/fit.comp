@@ -25,7 +25,7 @@ layout(push_constant) uniform Settings {
     uint per_texel;  // samples of a texel
     uint iterations;
     float sharpest;  // concentration
-    uint unused;     // rounds the block up to its alignment
+    uint first;      // texel of the first invocation: levels are fitted in bands
 } settings;
 
 // Second moments of a cluster, about its mean, and its weighted mean.
@@ -160,7 +160,7 @@ void improve(uvec2 texel)
 
 void main()
 {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = settings.first + gl_GlobalInvocationID.x;
     if (at >= settings.size.x * settings.size.y) { return; }
     uvec2 texel = uvec2(at % settings.size.x, at / settings.size.x);
     uvec2 first = texel * settings.fine / settings.size;
