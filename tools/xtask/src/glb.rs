@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 
 use crate::error::Error;
@@ -34,6 +34,12 @@ impl Buffers {
             json!({"componentType": 5125, "type": "SCALAR", "count": mesh.indices.len()}),
         );
         json!({"attributes": {"POSITION": positions, "NORMAL": normals}, "indices": indices, "material": material})
+    }
+
+    /// Adds texture coordinates; returns the accessor that a primitive names as `TEXCOORD_0`.
+    pub fn texture_coordinates(&mut self, coordinates: &[Vec2]) -> usize {
+        let description = json!({"componentType": 5126, "type": "VEC2", "count": coordinates.len()});
+        self.accessor(bytemuck::cast_slice(coordinates), description)
     }
 
     fn accessor(&mut self, bytes: &[u8], mut description: Value) -> usize {

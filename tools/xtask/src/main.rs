@@ -12,6 +12,7 @@ mod header;
 mod manifest;
 mod mesh;
 mod portability;
+mod relief;
 mod room;
 mod room_lines;
 mod shaders;
@@ -68,6 +69,8 @@ enum Command {
     Cloister,
     /// Make assets/mesh/street.glb, the scene of lamps in fog
     Street,
+    /// Make assets/normalmap and the meshes of the two scenes that show it, grooves.glb and weave.glb
+    Relief,
 }
 
 /// The workspace around the current folder; elsewhere, the one this command was built in.
@@ -89,6 +92,7 @@ fn run(command: Command) -> Result<(), error::Error> {
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
         Command::Street => street::make(&workspace().join("assets")),
+        Command::Relief => relief::make(&workspace().join("assets")),
         Command::Room { name, remove: false } => room::make(&workspace(), &name),
         Command::Room { name, remove: true } => room::remove(&workspace(), &name),
         Command::Header { check } => header::run(&workspace(), check),
