@@ -4,15 +4,10 @@
 
 mod common;
 
-use std::path::Path;
-
 use airglow_math::statistics::relative_l2;
 use airglow_normals::rivals::{self, Lean};
 use airglow_normals::{Brdf, Directions, FitSettings, Harmonics, Mixture, NormalMap, Sample};
 use airglow_normals::{fit, reference, shade};
-use airglow_scene::image_io::read_image;
-use airglow_scene::srgb_encode;
-use airglow_tests::data;
 use common::{Random, directions};
 
 const BRDFS: [Brdf; 7] = [
@@ -25,7 +20,9 @@ const BRDFS: [Brdf; 7] = [
     Brdf::Ggx { alpha: 0.5 },
 ];
 
-const METHODS: [&str; 8] = ["mip", "length", "toksvig", "lean", "sh:3", "sh:5", "vmf:1", "vmf:4"];
+/// `vmf:4 x 4` is the radiance of the four texels of the level below, averaged: what four taps of a shader see.
+const METHODS: [&str; 10] =
+    ["mip", "length", "toksvig", "lean", "sh:3", "sh:5", "vmf:1", "vmf:4", "vmf:6", "vmf:4 x 4"];
 
 /// How far from the mirror direction half of the rows look: about the width of the reflection.
 fn spread(brdf: Brdf) -> f64 {
@@ -41,15 +38,25 @@ struct Kept {
     footprint: Vec<Sample>,
     lean: Lean,
     harmonics: [Harmonics; 2],
-    mixtures: [Mixture; 2],
+    mixtures: [Mixture; 3],
+    children: Vec<Mixture>,
 }
 
 impl Kept {
-    fn new(footprint: Vec<Sample>) -> Self {
-        let lobes = |lobes| fit(&footprint, &FitSettings { lobes, ..Default::default() }).unwrap();
+    fn new(map: &NormalMap, level: usize, [x, y]: [usize; 2]) -> Self {
+        let footprint = map.footprint(level, x, y).unwrap();
+        let fitted = |footprint: &[Sample], lobes| {
+            fit(footprint, &FitSettings { lobes, ..Default::default() }).unwrap()
+        };
+        let child = |i: usize| map.footprint(level - 1, 2 * x + i % 2, 2 * y + i / 2).unwrap();
         let harmonics = |order| Harmonics::new(order, &footprint).unwrap();
-        let (mixtures, harmonics) = ([lobes(1), lobes(4)], [harmonics(3), harmonics(5)]);
-        Self { lean: Lean::new(&footprint), harmonics, mixtures, footprint }
+        Self {
+            lean: Lean::new(&footprint),
+            harmonics: [harmonics(3), harmonics(5)],
+            mixtures: [1, 4, 6].map(|lobes| fitted(&footprint, lobes)),
+            children: (0..4).map(|i| fitted(&child(i), 4)).collect(),
+            footprint,
+        }
     }
 
     fn radiances(&self, brdf: Brdf, directions: Directions) -> [f64; METHODS.len()] {
@@ -63,6 +70,8 @@ impl Kept {
             self.harmonics[1].radiance(brdf, directions).unwrap(),
             shade::radiance(&self.mixtures[0], brdf, directions),
             shade::radiance(&self.mixtures[1], brdf, directions),
+            shade::radiance(&self.mixtures[2], brdf, directions),
+            0.25 * self.children.iter().map(|child| shade::radiance(child, brdf, directions)).sum::<f64>(),
         ]
     }
 }
@@ -75,8 +84,7 @@ fn errors(name: &str, map: &NormalMap, texels: usize, levels: [usize; 2]) -> Vec
     for texel in 0..texels {
         let level = levels[0] + texel % (levels[1] - levels[0] + 1);
         let [width, height] = map.size(level);
-        let footprint = map.footprint(level, random.below(width), random.below(height)).unwrap();
-        let kept = Kept::new(footprint);
+        let kept = Kept::new(map, level, [random.below(width), random.below(height)]);
         for (i, &brdf) in BRDFS.iter().enumerate() {
             for row in 0..20 {
                 let directions = directions(row, &kept.footprint, spread(brdf), &mut random);
@@ -122,9 +130,12 @@ fn four_lobes_on_a_map_of_one_mode() {
 #[test]
 fn measured_maps() {
     for name in ["rock_1024", "leather_1024", "flakes_1024", "ripples_1024"] {
-        let Some(file) = data::find(&format!("normalmap/{name}.png")) else { return };
-        let lambert = errors(name, &read(&file), 28, [2, 7])[0];
+        let Some(map) = common::measured(name) else { return };
+        let errors = errors(name, &map, 28, [2, 7]);
+        let lambert = errors[0];
         assert!(lambert[method("vmf:4")] <= 0.01, "{name}: {lambert:?}");
+        let taps = errors.iter().map(|errors| errors[method("vmf:4 x 4")]);
+        assert!(taps.clone().all(|error| error <= 0.08), "{name}, four taps: {:?}", taps.collect::<Vec<_>>());
     }
 }
 

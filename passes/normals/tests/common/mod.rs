@@ -3,6 +3,9 @@
 
 use airglow_math::sequence::{sobol, uniform_hemisphere};
 use airglow_normals::{Directions, NormalMap, Sample};
+use airglow_scene::image_io::read_image;
+use airglow_scene::srgb_encode;
+use airglow_tests::data;
 use glam::DVec3;
 
 /// Reproducible numbers in [0, 1) (Steele, Lea and Flood's splitmix64).
@@ -87,4 +90,11 @@ pub fn directions(row: usize, footprint: &[Sample], spread: f64, random: &mut Ra
 /// Directions spread evenly over the upper hemisphere.
 pub fn hemisphere(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(|i| uniform_hemisphere(sobol(i, 3)))
+}
+
+/// A map of the test data, where there is one.
+pub fn measured(name: &str) -> Option<NormalMap> {
+    let image = read_image(&data::find(&format!("normalmap/{name}.png"))?).unwrap();
+    let vectors: Vec<_> = image.pixels.iter().map(|rgb| rgb.map(|c| 2.0 * srgb_encode(c) - 1.0)).collect();
+    Some(NormalMap::from_vectors(image.width, image.height, &vectors).unwrap())
 }
