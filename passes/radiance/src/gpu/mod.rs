@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod kernels;
 mod layout;
+mod read;
 pub mod refinement;
 mod texels;
 pub mod tree;

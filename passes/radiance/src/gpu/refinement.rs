@@ -20,6 +20,9 @@ pub const REFINE_BINDINGS: [BindingDesc; 7] = {
 /// The module of `radiance/refine.comp`.
 pub static REFINE: &[u8] = include_bytes!("../../../../shaders/spirv/radiance/refine.spv");
 
+/// The bit of a sample's node in `places` that says that the node was split.
+pub const SPLIT: u32 = 1 << 31;
+
 /// How far refinement went; the kernel's own, and what a host may read back.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -80,10 +80,10 @@ mod tests {
         let tree = Hierarchy::build(&positions, &transfer, &mut |_, _| ControlFlow::Continue(())).unwrap();
         let nodes = nodes(&tree, Oracle::Transfer);
         for (i, node) in nodes.iter().enumerate() {
-            for below in i..i + 2 * node.count as usize - 1 {
-                let far = tree.nodes()[i].point().distance(tree.nodes()[below].point());
-                let domain = far + OVERLAP * f64::from(nodes[below].reach);
-                assert!(domain <= f64::from(node.bound), "node {i}, {below}: {domain} > {}", node.bound);
+            for below in &tree.nodes()[i..][..2 * node.count as usize - 1] {
+                let far = tree.nodes()[i].point().distance(below.point());
+                let domain = far + OVERLAP * f64::from(below.reach);
+                assert!(domain <= f64::from(node.bound), "node {i}: {domain} > {}", node.bound);
             }
             assert_eq!(node.weight < 0.0, tree.nodes()[i].transfer == 0.0, "node {i}");
         }

@@ -1,91 +1,117 @@
 //! Light vectors of vertices from samples, on the device.
 
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc,
+    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context,
+    GpuError, Recorder,
 };
-use airglow_gpu::{Context, GpuError, Recorder};
 use airglow_math::sh::rotation::Rotation;
 use bytemuck::{Pod, Zeroable};
 
-use super::{LightShape, SampleBuffers};
+use super::{DeviceNode, LightShape, SampleBuffers};
 use crate::{OVERLAP, RadianceError, TRUST};
 
-/// Invocations of a workgroup, a vertex each.
-pub const WORKGROUP: u32 = 64;
+/// Vertices of a workgroup.
+pub const GROUP: usize = 64;
 
 macro_rules! by_order {
-    ($before:literal, $after:literal) => {
+    ($before:literal) => {
         [
-            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "3", $after)).as_slice(),
-            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "4", $after)).as_slice(),
-            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "5", $after)).as_slice(),
-            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "6", $after)).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "3.spv")).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "4.spv")).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "5.spv")).as_slice(),
+            include_bytes!(concat!("../../../../shaders/spirv/radiance/", $before, "6.spv")).as_slice(),
         ]
     };
 }
 
-/// By gradients, rotation, order - 3.
-static VERTICES: [[[&[u8]; 4]; 2]; 2] = [
-    [by_order!("vertices.ORDER", ".spv"), by_order!("vertices.ORDER", ".ROTATE.spv")],
-    [by_order!("vertices.GRADIENTS.ORDER", ".spv"), by_order!("vertices.GRADIENTS.ORDER", ".ROTATE.spv")],
-];
+/// By gradients, order - 3.
+static VERTICES: [[&[u8]; 4]; 2] = [by_order!("vertices.ORDER"), by_order!("vertices.GRADIENTS.ORDER")];
+/// By order - 3.
+static TURN: [&[u8]; 4] = by_order!("turn.ORDER");
 
-/// The module for samples of this shape; with `rotate` it turns light into the space of an instance. `None` for an order
-/// that has none.
-#[must_use]
-pub fn module(shape: LightShape, rotate: bool) -> Option<&'static [u8]> {
-    let place = shape.order.checked_sub(3)?;
-    VERTICES[usize::from(shape.gradients)][usize::from(rotate)].get(place).copied()
+fn of_order(modules: &[&'static [u8]; 4], order: usize) -> Option<&'static [u8]> {
+    modules.get(order.checked_sub(3)?).copied()
 }
 
-/// What the module binds.
+/// The module that makes light from samples of this shape; `None` for an order that has none.
 #[must_use]
-pub fn bindings(shape: LightShape, rotate: bool) -> Vec<BindingDesc> {
-    let mut bindings: Vec<_> = (0..7).map(|i| BindingDesc::new(i, BindingKind::StorageBuffer)).collect();
-    bindings.push(BindingDesc::new(7, BindingKind::UniformBuffer));
-    bindings.extend(shape.gradients.then_some(BindingDesc::new(8, BindingKind::StorageBuffer)));
-    bindings.extend(rotate.then_some(BindingDesc::new(9, BindingKind::StorageBuffer)));
+pub fn module(shape: LightShape) -> Option<&'static [u8]> {
+    of_order(&VERTICES[usize::from(shape.gradients)], shape.order)
+}
+
+/// The module that turns light into the space of an instance; `None` for an order that has none.
+#[must_use]
+pub fn turn_module(order: usize) -> Option<&'static [u8]> {
+    of_order(&TURN, order)
+}
+
+/// What [`turn_module`] binds.
+pub const TURN_BINDINGS: [BindingDesc; 2] =
+    [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::StorageBuffer)];
+
+/// What [`module`] binds.
+#[must_use]
+pub fn bindings(shape: LightShape) -> Vec<BindingDesc> {
+    let mut bindings: Vec<_> = (0..8).map(|i| BindingDesc::new(i, BindingKind::StorageBuffer)).collect();
+    bindings.push(BindingDesc::new(8, BindingKind::UniformBuffer));
+    bindings.extend(shape.gradients.then_some(BindingDesc::new(9, BindingKind::StorageBuffer)));
     bindings
+}
+
+/// A vertex as the kernel reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct DeviceVertex {
+    /// Metres.
+    pub position: [f32; 3],
+    /// Place in the light that is written.
+    pub place: u32,
 }
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Constants {
-    vertices: u32,
+    count: u32,
+    first: u32,
+    first_group: u32,
     nodes: u32,
     overlap: f32,
     trust: f32,
     largest: f32,
 }
 
-/// Bytes of the push constants of the kernels.
+/// Bytes of the push constants of [`module`].
 pub const CONSTANTS: u32 = size_of::<Constants>() as u32;
 
 /// The kernels over vertices.
 #[derive(Clone)]
 pub struct VertexKernels {
     shape: LightShape,
-    plain: ComputePipeline,
-    rotating: ComputePipeline,
+    light: ComputePipeline,
+    turn: ComputePipeline,
 }
 
-/// Where a kernel over vertices reads and writes.
+/// Where the kernel over vertices reads and writes.
 #[derive(Clone, Copy)]
 pub struct VertexWork<'a> {
     /// The tree.
     pub nodes: &'a Buffer,
     /// The samples.
     pub samples: &'a SampleBuffers,
-    /// Positions of the vertices, `[f32; 3]` each, metres.
-    pub positions: &'a BufferSlice,
+    /// All vertices, [`DeviceVertex`] each.
+    pub vertices: &'a Buffer,
+    /// A ball for each [`GROUP`] of them.
+    pub groups: &'a Buffer,
+    /// The first vertex.
+    pub first: u32,
+    /// Its group.
+    pub first_group: u32,
+    /// How many there are.
+    pub count: u32,
     /// Their light: `[[f32; 3]; order^2]` each.
     pub light: &'a BufferSlice,
-    /// How many there are.
-    pub vertices: u32,
     /// Light from far away, `vec4[order^2]`.
     pub distant: &'a BufferSlice,
-    /// Matrices of the rotation into the space of an instance, as [`matrices`] gives them; `None` for none.
-    pub rotation: Option<&'a Buffer>,
     /// Reach of the root.
     pub reach: f32,
 }
@@ -96,18 +122,15 @@ impl VertexKernels {
     /// # Errors
     /// [`RadianceError::Setting`] for an order but 3 to 6; [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, shape: LightShape) -> Result<Self, RadianceError> {
-        let make = |rotate| {
+        let make = |name, module: Option<&[u8]>, bindings: &[BindingDesc], push_constant_size| {
             let refused = || RadianceError::setting("order", shape.order, "3 to 6 bands");
-            let spirv = super::words(module(shape, rotate).ok_or_else(refused)?);
-            let desc = ComputePipelineDesc {
-                name: "radiance vertices",
-                spirv: &spirv,
-                bindings: &bindings(shape, rotate),
-                push_constant_size: CONSTANTS,
-            };
+            let spirv = &super::words(module.ok_or_else(refused)?);
+            let desc = ComputePipelineDesc { name, spirv, bindings, push_constant_size };
             Ok::<_, RadianceError>(context.create_compute_pipeline(&desc)?)
         };
-        Ok(Self { shape, plain: make(false)?, rotating: make(true)? })
+        let light = make("radiance vertices", module(shape), &bindings(shape), CONSTANTS)?;
+        let turn = make("radiance turn", turn_module(shape.order), &TURN_BINDINGS, 4)?;
+        Ok(Self { shape, light, turn })
     }
 
     /// Records the light of some vertices. The barriers before and after are the caller's.
@@ -116,34 +139,46 @@ impl VertexKernels {
     /// [`GpuError::Misuse`] for buffers that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, work: &VertexWork<'_>) -> Result<(), GpuError> {
         let samples = work.samples;
-        let [a, b, c, d, e, f, g, h] = [
+        let bound = [
             Binding::storage(0, work.nodes),
             Binding::storage(1, &samples.slots),
             Binding::storage(2, &samples.places),
             Binding::storage(3, &samples.lights),
             Binding::storage(4, &samples.state),
-            Binding::storage(5, work.positions.clone()),
-            Binding::storage(6, work.light.clone()),
-            Binding::uniform(7, work.distant.clone()),
+            Binding::storage(5, work.vertices),
+            Binding::storage(6, work.groups),
+            Binding::storage(7, work.light.clone()),
+            Binding::uniform(8, work.distant.clone()),
+            Binding::storage(9, &samples.gradients),
         ];
-        let slopes = || Binding::storage(8, &samples.gradients);
-        // Arrays, not a list: recording leaves the heap alone.
-        match (self.shape.gradients, work.rotation.map(|rotation| Binding::storage(9, rotation))) {
-            (false, None) => recorder.bind_compute(&self.plain, &[a, b, c, d, e, f, g, h]),
-            (true, None) => recorder.bind_compute(&self.plain, &[a, b, c, d, e, f, g, h, slopes()]),
-            (false, Some(turn)) => recorder.bind_compute(&self.rotating, &[a, b, c, d, e, f, g, h, turn]),
-            (true, Some(turn)) => {
-                recorder.bind_compute(&self.rotating, &[a, b, c, d, e, f, g, h, slopes(), turn])
-            }
-        }?;
+        recorder.bind_compute(&self.light, &bound[..9 + usize::from(self.shape.gradients)])?;
         recorder.push_constants(&Constants {
-            vertices: work.vertices,
-            nodes: (work.nodes.size() / size_of::<super::DeviceNode>() as u64) as u32,
+            count: work.count,
+            first: work.first,
+            first_group: work.first_group,
+            nodes: (work.nodes.size() / size_of::<DeviceNode>() as u64) as u32,
             overlap: OVERLAP as f32,
             trust: TRUST as f32,
             largest: (OVERLAP as f32 * work.reach).max(f32::MIN_POSITIVE),
         })?;
-        recorder.dispatch([work.vertices.div_ceil(WORKGROUP), 1, 1])
+        recorder.dispatch([work.count.div_ceil(GROUP as u32), 1, 1])
+    }
+
+    /// Records the rotation of `count` vertices' light by [`matrices`], after a barrier of the caller's.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for buffers that do not fit.
+    pub fn record_turn(
+        &self,
+        recorder: &mut Recorder<'_>,
+        rotation: &Buffer,
+        light: &BufferSlice,
+        count: u32,
+    ) -> Result<(), GpuError> {
+        let bound = [Binding::storage(0, rotation), Binding::storage(1, light.clone())];
+        recorder.bind_compute(&self.turn, &bound)?;
+        recorder.push_constants(&count)?;
+        recorder.dispatch([count.div_ceil(GROUP as u32), 1, 1])
     }
 }
 

@@ -1,0 +1,78 @@
+//! What changes from frame to frame without a new plan: emitters and distant light.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::gpu::EmitterTriangle;
+use crate::gpu::refinement::DeviceGlow;
+use crate::{Glow, RadianceError, Triangle, check};
+
+/// What a receiver is lit by.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lights<'a> {
+    /// Triangles that emit or block, in the space of the receiver's positions.
+    pub emitters: &'a [Triangle],
+    /// Light from far away about the axes of that space, SH RGB, order squared of them, which every vertex gets as well:
+    /// its transfer knows what shadows it. Empty for none.
+    pub distant: &'a [[f32; 3]],
+}
+
+/// The lights of a declared frame, to be changed before its plan is recorded again. Clones are the same one.
+#[derive(Clone, Debug)]
+pub struct Control {
+    coefficients: usize,
+    packed: Arc<Mutex<Packed>>,
+}
+
+/// Lights as kernels read them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Packed {
+    pub triangles: Vec<EmitterTriangle>,
+    pub glows: Vec<DeviceGlow>,
+    pub glow_count: u32,
+    pub distant: Vec<[f32; 4]>,
+}
+
+impl Control {
+    pub(crate) fn new(coefficients: usize, lights: &Lights<'_>) -> Result<Self, RadianceError> {
+        let control = Self { coefficients, packed: Arc::default() };
+        control.set(lights)?;
+        Ok(control)
+    }
+
+    /// Sets the lights that count from the next recording on. On an error the old ones stay. While emitters
+    /// stay, no sample is taken again.
+    ///
+    /// # Errors
+    /// [`RadianceError::Value`] for an emitter or distant light that is not finite; [`RadianceError::Length`] unless there
+    /// is no distant light or order squared of it.
+    pub fn set(&self, lights: &Lights<'_>) -> Result<(), RadianceError> {
+        check(lights.emitters)?;
+        let (expected, actual) = (self.coefficients, lights.distant.len());
+        if actual != 0 && actual != expected {
+            return Err(RadianceError::Length { what: "the distant light", expected, actual });
+        }
+        let bad = |light: &[f32; 3]| light.iter().any(|x| !x.is_finite());
+        if let Some(index) = lights.distant.iter().position(bad) {
+            let value = format!("{:?}", lights.distant[index]);
+            return Err(RadianceError::Value { what: "coefficient of the distant light", index, value });
+        }
+        let mut distant = vec![[0.0; 4]; self.coefficients];
+        distant.iter_mut().zip(lights.distant).for_each(|(to, [r, g, b])| *to = [*r, *g, *b, 0.0]);
+        // A buffer cannot be empty: one of no size and no light stands for none.
+        let mut triangles: Vec<_> = lights.emitters.iter().map(EmitterTriangle::from).collect();
+        let mut glows: Vec<_> = Glow::of(lights.emitters).iter().map(DeviceGlow::from).collect();
+        let glow_count = glows.len() as u32;
+        if triangles.is_empty() {
+            triangles.push(EmitterTriangle::default());
+        }
+        if glows.is_empty() {
+            glows.push(DeviceGlow::default());
+        }
+        *self.lock() = Packed { triangles, glows, glow_count, distant };
+        Ok(())
+    }
+
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Packed> {
+        self.packed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

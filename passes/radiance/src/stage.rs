@@ -1,0 +1,225 @@
+//! A frame as data: the resources it touches and the stages that use them. Both roads are made from it.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use airglow_gpu::{Buffer, BufferSlice, GpuError, Recorder};
+use airglow_graph::{Access, LeftOut, PassKind};
+
+use crate::control::Control;
+use crate::gpu::vertices::VertexWork;
+use crate::gpu::{Refinement, TexelBuffers, Texels, VertexKernels};
+use crate::receiver::Receiver;
+
+/// What a stage uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Resource {
+    /// The tree over the vertices.
+    Tree,
+    /// The vertices.
+    Vertices,
+    /// Balls that hold those of a workgroup.
+    Groups,
+    /// Rotation into the space of a part's light, by its index.
+    Rotation(u32),
+    /// The sample of each node.
+    Slots,
+    /// The node of each sample.
+    Places,
+    /// Where each sample is taken.
+    Points,
+    /// The light of each sample.
+    Lights,
+    /// Its gradients.
+    Gradients,
+    /// How far refinement went.
+    State,
+    /// The light of the vertices of a part, by its index: the result.
+    VertexLight(u32),
+}
+
+impl fmt::Display for Resource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tree => f.write_str("radiance tree"),
+            Self::Vertices => f.write_str("radiance vertices"),
+            Self::Groups => f.write_str("radiance groups"),
+            Self::Rotation(part) => write!(f, "radiance rotation of part {part}"),
+            Self::Slots => f.write_str("radiance slots"),
+            Self::Places => f.write_str("radiance places"),
+            Self::Points => f.write_str("radiance points"),
+            Self::Lights => f.write_str("radiance lights"),
+            Self::Gradients => f.write_str("radiance gradients"),
+            Self::State => f.write_str("radiance state"),
+            Self::VertexLight(part) => write!(f, "radiance light of part {part}"),
+        }
+    }
+}
+
+/// One pass of a frame.
+#[derive(Clone)]
+pub struct Stage {
+    /// Name, as the plan shows it.
+    pub name: &'static str,
+    /// What it records.
+    pub kind: PassKind,
+    /// What it uses, each resource once.
+    pub uses: Vec<(Resource, Access)>,
+    pub(crate) work: Work,
+}
+
+/// What a stage records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    Uploads,
+    Samples,
+    Vertices,
+}
+
+/// A frame as data.
+#[derive(Clone)]
+pub struct Prepared {
+    /// The stages in order; none when the pass is left out.
+    pub stages: Vec<Stage>,
+    /// This room's own buffers that the stages use, with the use before the frame and after it.
+    pub ours: Vec<(Resource, Buffer, Access)>,
+    /// Bytes of the light of each part.
+    pub light_bytes: Vec<u64>,
+    /// Why there is no stage.
+    pub left_out: Option<LeftOut>,
+    /// The lights, to be changed before the frame is recorded again; none when the pass is left out.
+    pub control: Option<Control>,
+    pub(crate) scene: Option<Scene>,
+}
+
+/// What stages record with.
+#[derive(Clone)]
+pub(crate) struct Scene {
+    pub receiver: Receiver,
+    pub refinement: Refinement,
+    pub texels: Texels,
+    pub vertices: VertexKernels,
+    pub control: Control,
+}
+
+/// The light of each part, by its index: buffers of the host's or of the graph's.
+pub type Bindings = BTreeMap<u32, BufferSlice>;
+
+impl Prepared {
+    /// What the frame uses, for the barriers of a host's own frame graph: each resource with the accesses of all stages, in
+    /// order.
+    #[must_use]
+    pub fn accesses(&self) -> Vec<(Resource, Vec<Access>)> {
+        let mut accesses: BTreeMap<Resource, Vec<Access>> = BTreeMap::new();
+        for (resource, access) in self.stages.iter().flat_map(|stage| &stage.uses) {
+            accesses.entry(*resource).or_default().push(*access);
+        }
+        accesses.into_iter().collect()
+    }
+
+    /// Records all stages with the barriers between them and those of this room's own buffers; the light of the parts is
+    /// written as [`Access::ComputeStorageWrite`], and its barriers are the host's. Command-buffer state changed: as
+    /// [`Recorder`] says.
+    ///
+    /// # Errors
+    /// [`GpuError::Misuse`] for light that is not bound or too small.
+    pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        let Some(scene) = &self.scene else { return Ok(()) };
+        for stage in &self.stages {
+            let [before, after] = match stage.work {
+                Work::Uploads => [Access::ComputeStorageRead, Access::TransferDestination],
+                Work::Samples => [Access::ComputeStorageReadWrite; 2],
+                Work::Vertices => [Access::ComputeStorageReadWrite, Access::ComputeStorageRead],
+            };
+            recorder.memory_barrier(before, after)?;
+            recorder.labelled(stage.name, |recorder| scene.record(recorder, stage.work, bindings))?;
+            if stage.work == Work::Uploads {
+                recorder.memory_barrier(Access::TransferDestination, Access::ComputeStorageRead)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Scene {
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        work: Work,
+        bindings: &Bindings,
+    ) -> Result<(), GpuError> {
+        match work {
+            Work::Uploads => self.receiver.staged().try_for_each(|(_, staged)| staged.record(recorder)),
+            Work::Samples => self.record_samples(recorder),
+            Work::Vertices => self.record_vertices(recorder, bindings),
+        }
+    }
+
+    /// Round by round: what the last round's samples ask for, sampled. A round that nothing asks for dispatches nothing.
+    fn record_samples(&self, recorder: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let packed = self.control.lock();
+        let mut sampled = self.receiver.sampled();
+        if *sampled == packed.triangles {
+            return Ok(());
+        }
+        let (receiver, samples) = (&self.receiver, &self.receiver.samples);
+        let settings = &receiver.settings.refinement;
+        let triangles = recorder.upload(&packed.triangles)?;
+        let glows = recorder.upload(&packed.glows)?;
+        let texels = TexelBuffers {
+            batch: samples.state.slice(0, size_of::<crate::gpu::Batch>() as u64)?,
+            points: (&samples.points).into(),
+            triangles,
+            triangle_count: packed.triangles.len() as u32,
+            lights: (&samples.lights).into(),
+            gradients: (&samples.gradients).into(),
+        };
+        let refine = |recorder: &mut Recorder<'_>, seed| {
+            let glows = (&glows, packed.glow_count);
+            self.refinement.record(recorder, &receiver.tree.buffer, samples, glows, settings, seed)
+        };
+        refine(recorder, true)?;
+        for _ in 0..receiver.rounds {
+            recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
+            recorder.memory_barrier(Access::ComputeStorageWrite, Access::IndirectBuffer)?;
+            self.texels.record(recorder, &texels)?;
+            recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
+            refine(recorder, false)?;
+        }
+        sampled.clone_from(&packed.triangles);
+        Ok(())
+    }
+
+    fn record_vertices(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
+        let receiver = &self.receiver;
+        let distant = recorder.upload(&self.control.lock().distant)?;
+        let bytes = receiver.settings.light_bytes();
+        for chunk in &receiver.chunks {
+            let part = chunk.part as u32;
+            let missing = || GpuError::misuse("radiance", format!("the light of part {part} is not bound"));
+            let whole = bindings.get(&part).ok_or_else(missing)?;
+            let place = whole.offset() + bytes * u64::from(chunk.vertex);
+            let light = whole.buffer().slice(place, bytes * u64::from(chunk.count))?;
+            self.vertices.record(
+                recorder,
+                &VertexWork {
+                    nodes: &receiver.tree.buffer,
+                    samples: &receiver.samples,
+                    vertices: &receiver.vertices.buffer,
+                    groups: &receiver.groups.buffer,
+                    first: chunk.first,
+                    first_group: chunk.first_group,
+                    count: chunk.count,
+                    light: &light,
+                    distant: &distant,
+                    reach: receiver.reach,
+                },
+            )?;
+            if let Some(rotation) = receiver.rotations.get(&part) {
+                recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
+                self.vertices.record_turn(recorder, &rotation.buffer, &light, chunk.count)?;
+            }
+        }
+        Ok(())
+    }
+}
