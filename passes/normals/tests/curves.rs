@@ -138,10 +138,3 @@ fn measured_maps() {
         assert!(taps.clone().all(|error| error <= 0.08), "{name}, four taps: {:?}", taps.collect::<Vec<_>>());
     }
 }
-
-/// A PNG's components as stored: it was decoded from sRGB as a picture would be.
-fn read(file: &Path) -> NormalMap {
-    let image = read_image(file).unwrap();
-    let vectors: Vec<_> = image.pixels.iter().map(|rgb| rgb.map(|c| 2.0 * srgb_encode(c) - 1.0)).collect();
-    NormalMap::from_vectors(image.width, image.height, &vectors).unwrap()
-}

@@ -92,7 +92,7 @@ pub fn hemisphere(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(|i| uniform_hemisphere(sobol(i, 3)))
 }
 
-/// A map of the test data, where there is one.
+/// A map of the test data, where there is one; its components as stored: it was decoded from sRGB as a picture would be.
 pub fn measured(name: &str) -> Option<NormalMap> {
     let image = read_image(&data::find(&format!("normalmap/{name}.png"))?).unwrap();
     let vectors: Vec<_> = image.pixels.iter().map(|rgb| rgb.map(|c| 2.0 * srgb_encode(c) - 1.0)).collect();
