@@ -9,11 +9,13 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::brdf::{Brdf, Directions};
-use crate::mixture::Mixture;
-use crate::vmf::Lobe;
+use crate::mixture::{Mixture, WeightedLobe};
+use crate::vmf::{Lobe, mean_length};
 
-/// Distance in ln u of the exponentials that make up the GGX distribution; the error is 0.3 % at 1.
+/// Distance in ln u of the Gaussians that make up the GGX distribution; the error is 0.4 % at 1.
 const STEP: f64 = 1.0;
+/// Of the cosine of normal and half vector where an exponential touches: behind the horizon there is nothing to touch.
+const LEAST_TOUCH: f64 = 0.05;
 
 /// Radiance of a mixture, as [`crate::reference::radiance`] of its normals.
 #[must_use]
@@ -27,7 +29,7 @@ fn of_lobe(lobe: &Lobe, brdf: Brdf, Directions { light, half }: Directions) -> f
         Brdf::Lambert => lobe.clamped_cosine(light) / PI,
         _ if half == DVec3::ZERO => 0.0,
         Brdf::BlinnPhong { exponent } => blinn_phong(lobe, exponent, light, half),
-        Brdf::Ggx { alpha } => ggx(lobe, alpha, light, half),
+        Brdf::Ggx { alpha } => unmasked(reflecting_ggx(lobe, alpha, half), light),
     }
 }
 
@@ -44,27 +46,32 @@ fn blinn_phong(lobe: &Lobe, exponent: f64, light: DVec3, half: DVec3) -> f64 {
     (exponent + 8.0) / (8.0 * PI) * height * integral * product.clamped_cosine(light)
 }
 
+/// The normals of a lobe that reflect by GGX's `D(n.h)`: the integral, and its product with their mean.
+///
 /// GGX is a blend of Beckmann-like lobes of all widths: with `y = (1/alpha^2 - 1) (1 - (n.h)^2)`,
 /// `1 / (1 + y)^2 = Int u e^(-u) e^(-u y) du`, here by the trapezoidal rule in ln u. One exponential alone would lose
-/// the tails, which bring most of the reflection of broad lobes.
-fn ggx(lobe: &Lobe, alpha: f64, light: DVec3, half: DVec3) -> f64 {
+/// the tails, which bring most of the reflection of broad lobes. `exp(-k (1 - (n.h)^2))` is taken as the exponential
+/// that touches it where the narrower one before it lay.
+fn reflecting_ggx(lobe: &Lobe, alpha: f64, half: DVec3) -> WeightedLobe {
     let narrowing = 1.0 / (alpha * alpha) - 1.0;
     let count = ((1.0 + narrowing).ln() / STEP).ceil() as usize + 5;
-    let one = |i: usize| {
+    let (mut sum, mut touch) = (WeightedLobe::default(), 1.0);
+    for i in 0..count {
         let u = (1.5 - STEP * i as f64).exp();
-        STEP * u * u * (-u).exp() * gaussian(lobe, u * narrowing, light, half)
-    };
-    (0..count).map(one).sum::<f64>() / (4.0 * PI * alpha * alpha)
+        let k = u * narrowing;
+        let sharpness = 2.0 * k * touch;
+        let (logarithm, product) = lobe.log_times(sharpness, half);
+        touch = product.axis.dot(half).max(LEAST_TOUCH);
+        let height = -u - k * (1.0 - touch * touch) + sharpness * (1.0 - touch);
+        let integral = u * u * (logarithm + height).exp();
+        sum.weight += integral;
+        sum.moment += integral * mean_length(product.concentration) * product.axis;
+    }
+    let scale = STEP / (PI * alpha * alpha);
+    WeightedLobe { weight: scale * sum.weight, moment: scale * sum.moment }
 }
 
-/// `exp(-k (1 - (n.h)^2))` over a lobe, by the exponential that touches it at the axis of the product.
-fn gaussian(lobe: &Lobe, k: f64, light: DVec3, half: DVec3) -> f64 {
-    const LEAST: f64 = 0.05; // of the cosine where it touches: behind the horizon there is nothing to touch
-    let touch = |cosine: f64| 2.0 * k * cosine.max(LEAST);
-    let (_, first) = lobe.times(touch(lobe.axis.dot(half)), half);
-    let sharpness = touch(first.axis.dot(half));
-    let (integral, product) = lobe.times(sharpness, half);
-    let cosine = product.axis.dot(half).max(LEAST);
-    let height = (-k * (1.0 - cosine * cosine) + sharpness * (1.0 - cosine)).exp();
-    height * integral * product.clamped_cosine(light)
+/// A quarter of what reflects times its mean cosine.
+fn unmasked(reflecting: WeightedLobe, light: DVec3) -> f64 {
+    0.25 * reflecting.weight * Lobe::from_mean(reflecting.mean()).clamped_cosine(light)
 }

@@ -54,14 +54,21 @@ impl Lobe {
     /// `k (1 - e^(-2 |v|)) / (|v| (1 - e^(-2 k))) e^(|v| - k - s)`, whose exponent is taken without cancellation.
     #[must_use]
     pub fn times(&self, sharpness: f64, direction: DVec3) -> (f64, Self) {
+        let (logarithm, product) = self.log_times(sharpness, direction);
+        (logarithm.exp(), product)
+    }
+
+    /// The same with the logarithm of the integral, for a height on top that may be huge where the integral is tiny.
+    #[must_use]
+    pub fn log_times(&self, sharpness: f64, direction: DVec3) -> (f64, Self) {
         let k = self.concentration;
         let sum = k * self.axis + sharpness * direction;
         let length = sum.length().max(MIN_CONCENTRATION);
         let opening = (1.0 - self.axis.dot(direction)).max(0.0);
         let exponent = -2.0 * k * sharpness * opening / (length + k + sharpness);
-        let integral = k * (-2.0 * length).exp_m1() / (length * (-2.0 * k).exp_m1()) * exponent.exp();
+        let factor = k * (-2.0 * length).exp_m1() / (length * (-2.0 * k).exp_m1());
         let axis = sum.try_normalize().unwrap_or(self.axis);
-        (integral, Self { axis, concentration: length })
+        (factor.ln() + exponent, Self { axis, concentration: length })
     }
 
     /// Mean of the clamped cosine `(n.l)+` over the lobe, n.l taken as normally distributed with the lobe's exact mean

@@ -6,6 +6,7 @@
 // array, bound as one more attribute. 0: the room is absent, and the draw has no such input.
 
 // HOST_LIGHTS 1: the scene has lights that shine on surfaces, whose place and normal the fragment stage needs.
+// HOST_TANGENTS 1: the surface has a normal map, whose axes the fragment stage needs, too; only with HOST_LIGHTS.
 
 #include "host/frame.glsl"
 #include "host/material.glsl"
@@ -18,12 +19,18 @@ layout(location = 2) in vec4 colour;
 #if HOST_LIGHTS
 layout(location = 3) in vec3 normal;
 #endif
+#if HOST_TANGENTS
+layout(location = 4) in vec4 tangent;
+#endif
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec3 out_light;
 #if HOST_LIGHTS
 layout(location = 2) out vec3 out_normal;
 layout(location = 3) out vec3 out_position;
+#endif
+#if HOST_TANGENTS
+layout(location = 4) out vec4 out_tangent;
 #endif
 
 void main()
@@ -36,6 +43,9 @@ void main()
     mat3 cofactors = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
     out_normal = cofactors * normal;
     out_position = place.xyz;
+#endif
+#if HOST_TANGENTS
+    out_tangent = vec4(linear * tangent.xyz, tangent.w);
 #endif
     out_uv = vec2(dot(material.uv_linear.xy, uv), dot(material.uv_linear.zw, uv)) + material.uv_offset;
 #if AIRGLOW_RELIGHT

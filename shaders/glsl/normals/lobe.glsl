@@ -64,14 +64,15 @@ float normals_versine(vec3 a, vec3 b)
     return 0.5 * dot(between, between);
 }
 
-// The lobe that a lobe becomes times exp(sharpness (n.direction - 1)), and the integral of the product.
-NormalsLobe normals_times(NormalsLobe lobe, float sharpness, vec3 direction, out float integral)
+// The lobe that a lobe becomes times exp(sharpness (n.direction - 1)), and the integral of the product as
+// factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes into the exponent.
+NormalsLobe normals_times(NormalsLobe lobe, float sharpness, vec3 direction, out float factor, out float exponent)
 {
     float k = lobe.concentration;
     vec3 sum = k * lobe.axis + sharpness * direction;
     float size = max(length(sum), 1e-6);
-    float exponent = -2.0 * k * sharpness * normals_versine(lobe.axis, direction) / (size + k + sharpness);
-    integral = normals_opening(size) / normals_opening(k) * exp(exponent);
+    exponent = -2.0 * k * sharpness * normals_versine(lobe.axis, direction) / (size + k + sharpness);
+    factor = normals_opening(size) / normals_opening(k);
     return NormalsLobe(sum / size, size);
 }
 
@@ -109,40 +110,13 @@ float normals_log_one_minus(float x)
 float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
 {
     float sharpness = exponent + 1.0;
-    float integral;
-    NormalsLobe product = normals_times(normals_lobe(stored), sharpness, half_vector, integral);
+    float factor;
+    float fall;
+    NormalsLobe product = normals_times(normals_lobe(stored), sharpness, half_vector, factor, fall);
     float x = normals_versine(product.axis, half_vector);
     if (x >= 1.0) { return 0.0; }
-    float height = exp(exponent * normals_log_one_minus(x) + sharpness * x);
-    return stored.w * (exponent + 8.0) / (8.0 * PI) * height * integral * normals_clamped_cosine(product, light);
-}
-
-// The mean of exp(-k (1 - (n.h)^2)) (n.l)+, by the exponential that touches it at the product's axis.
-float normals_gaussian(NormalsLobe lobe, float k, vec3 light, vec3 half_vector)
-{
-    const float least = 0.05; // of the cosine where it touches
-    float integral;
-    float sharpness = 2.0 * k * max(dot(lobe.axis, half_vector), least);
-    NormalsLobe product = normals_times(lobe, sharpness, half_vector, integral);
-    sharpness = 2.0 * k * max(dot(product.axis, half_vector), least);
-    product = normals_times(lobe, sharpness, half_vector, integral);
-    float x = min(normals_versine(product.axis, half_vector), 1.0 - least);
-    return exp(x * (sharpness - k * (2.0 - x))) * integral * normals_clamped_cosine(product, light);
-}
-
-// The mean of D(n.h) / 4 (n.l)+, D of Walter et al. 2007: `1 / (1 + y)^2 = Int u e^(-u) e^(-u y) du`, a blend of
-// Gaussians of all widths, by the trapezoidal rule of step 1 in ln u.
-float normals_ggx(vec4 stored, float alpha, vec3 light, vec3 half_vector)
-{
-    NormalsLobe lobe = normals_lobe(stored);
-    float narrowing = max(1.0 / (alpha * alpha) - 1.0, 0.0);
-    int count = int(ceil(log(1.0 + narrowing))) + 5;
-    float sum = 0.0;
-    for (int i = 0; i < count; ++i) {
-        float u = exp(1.5 - float(i));
-        sum += u * u * exp(-u) * normals_gaussian(lobe, u * narrowing, light, half_vector);
-    }
-    return stored.w * sum / (4.0 * PI * alpha * alpha);
+    float integral = factor * exp(fall + exponent * normals_log_one_minus(x) + sharpness * x);
+    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * normals_clamped_cosine(product, light);
 }
 
 #endif

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The radiance of mixtures on rows of parameters, by the functions that hosts include: for tests and evaluation.
 
-#include "normals/lobe.glsl"
+#include "normals/microfacet.glsl"
 
 layout(local_size_x = 64) in;
 

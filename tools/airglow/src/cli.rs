@@ -2,6 +2,8 @@
 
 use clap::{Args, Parser, Subcommand};
 
+#[cfg(all(feature = "normals", feature = "relight"))]
+use crate::commands::maps;
 use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
 use crate::commands::{eval, explain, plan, render, report, show, stability};
@@ -62,6 +64,8 @@ pub enum Command {
     Render(render::Arguments),
     #[cfg(feature = "relight")]
     Show(show::Arguments),
+    #[cfg(all(feature = "normals", feature = "relight"))]
+    Maps(maps::Arguments),
     Compare(compare::Arguments),
     #[cfg(feature = "relight")]
     Plan(plan::Arguments),

@@ -7,6 +7,8 @@ pub mod devices;
 pub mod eval;
 #[cfg(feature = "relight")]
 pub mod explain;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod maps;
 #[cfg(feature = "relight")]
 pub mod plan;
 #[cfg(feature = "relight")]
@@ -37,6 +39,8 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Render(arguments) => render::run(&arguments, global, output),
         #[cfg(feature = "relight")]
         Command::Show(arguments) => show::run(&arguments, global, output),
+        #[cfg(all(feature = "normals", feature = "relight"))]
+        Command::Maps(arguments) => maps::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Plan(arguments) => plan::run(&arguments, global, output),

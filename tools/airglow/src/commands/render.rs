@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use airglow_scene::Scene;
 use airglow_scene::image_io::{write_exr, write_png_bytes};
+use airglow_scene::{Scene, tone};
 use clap::{Args, ValueEnum};
 use glam::DQuat;
 use serde::Serialize;
@@ -13,6 +13,7 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
 use crate::host::environment_samples::EnvironmentSamples;
+use crate::host::filter::Filter;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Picture, Renderer, Settings, WARM_UP};
 use crate::host::{device, truth};
@@ -35,6 +36,7 @@ use crate::report::model::Machine;
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
   airglow render assets/scenes/demo.toml -o both.png --without relight --split
   airglow render assets/scenes/demo.toml -o pair.png --views 2
+  airglow render assets/scenes/grooves.toml -o truth.png --maps texels --samples 4 --passes 64
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
     #[command(flatten)]
@@ -69,6 +71,12 @@ pub struct Arguments {
     /// Factor from scene-linear values to the display, instead of the scene file's.
     #[arg(long, value_name = "FACTOR")]
     exposure: Option<f32>,
+    /// What stands for the normals of normal maps under a pixel.
+    #[arg(long, value_enum, default_value_t = Filter::Lobes)]
+    maps: Filter,
+    /// Average so many passes into the picture, each moved by a fraction of a sample: hundreds of samples a pixel.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with_all = ["split", "views"])]
+    passes: u32,
     /// Leave a pass out: the picture shows what it adds. Without relight, light comes evenly from everywhere.
     #[arg(long, value_enum)]
     without: Option<PassName>,
@@ -152,11 +160,16 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     }
     let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
         let mut settings = settings(arguments);
-        let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
+        let size = settings.picture_size();
+        let mut renderer = Renderer::with_filter(device, &scene, &source, size, arguments.maps)?;
         renderer.health().map_or(Ok(()), |health| health::clear(device, health))?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let statistics = arguments.pipeline_statistics;
         let mut picture = renderer.draw_counted(&settings, arguments.frames as usize, statistics)?;
+        if arguments.passes > 1 {
+            picture.linear = renderer.average(&settings, arguments.passes)?;
+            picture.display = tone::encode(&picture.linear, settings.exposure);
+        }
         if arguments.split {
             picture.replace_left_half(&renderer.draw(&arguments.split(settings), 1)?);
         }

@@ -1,5 +1,6 @@
 //! The host's own draws: the scene with what the passes wrote for its vertices, then the sky, then the picture.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use airglow_gpu::ash::vk;
@@ -24,6 +25,8 @@ pub struct Pipelines {
     ambient: GraphicsPipeline,
     /// The same two in fog.
     fogged: Option<[GraphicsPipeline; 2]>,
+    /// The same two for surfaces with normal maps, by the layers of what is kept of these.
+    mapped: BTreeMap<u32, [GraphicsPipeline; 2]>,
     sky: GraphicsPipeline,
     develop: ComputePipeline,
     hdr: vk::Format,
@@ -102,24 +105,31 @@ struct DevelopConstants {
 
 impl Pipelines {
     /// Makes the pipelines; `hdr` is a float format with colour attachment and sampling, `lights` says whether the scene
-    /// has lights, `fogged` is the fragment stage in fog where they shine into a medium.
+    /// has lights, `fogged` is the fragment stage in fog where they shine into a medium, `mapped` those for normal maps.
     pub fn new(
         context: &Context,
         hdr: vk::Format,
         lights: bool,
         fogged: Option<&[u32]>,
+        mapped: &[(u32, Vec<u32>)],
     ) -> Result<Self, GpuError> {
         let fragment = shaders::scene_fragment(lights);
         let bindings = &DRAW_BINDINGS[..if lights { 4 } else { 3 }];
-        let clear = |relight| scene_pipeline(context, hdr, relight, lights, &fragment, bindings);
-        let in_fog = |fragment| {
-            let of = |relight| scene_pipeline(context, hdr, relight, lights, fragment, &DRAW_BINDINGS);
+        let plain = if lights { Inputs::Lit } else { Inputs::Unlit };
+        let both = |inputs, fragment: &[u32], bindings: &[BindingDesc]| {
+            let of = |relight| scene_pipeline(context, hdr, relight, inputs, fragment, bindings);
             Ok::<_, GpuError>([of(true)?, of(false)?])
         };
+        let [lit, ambient] = both(plain, &fragment, bindings)?;
+        let in_fog = |fragment| both(plain, fragment, &DRAW_BINDINGS);
+        let with_map = |(layers, fragment): &(u32, Vec<u32>)| {
+            Ok::<_, GpuError>((*layers, both(Inputs::Mapped, fragment, &MAPPED_BINDINGS)?))
+        };
         Ok(Self {
-            lit: clear(true)?,
-            ambient: clear(false)?,
+            lit,
+            ambient,
             fogged: fogged.map(in_fog).transpose()?,
+            mapped: mapped.iter().map(with_map).collect::<Result<_, _>>()?,
             sky: sky_pipeline(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
@@ -167,6 +177,7 @@ impl Pipelines {
         };
         let lit = if colours.is_some() { lit } else { ambient };
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
+        let mapped = if lobes.is_some() { BTreeMap::new() } else { self.mapped.clone() };
         let (scene, view) = (Arc::clone(scene), view.clone());
         let (colours, lights) = (colours.cloned(), lights.cloned());
         pass.record(Box::new(move |recorder, resources| {
@@ -185,7 +196,14 @@ impl Pipelines {
             }
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
-                record_draw(recorder, resources, &pipeline, draw, &bound, colours)?;
+                let map = draw.mapped.as_ref().and_then(|map| Some((map, mapped.get(&map.layers)?)));
+                let pipeline = match &map {
+                    Some((_, [lit, _])) if colours.is_some() => lit,
+                    Some((_, [_, ambient])) => ambient,
+                    None => &pipeline,
+                };
+                let map = map.map(|(map, _)| &map.bindings);
+                record_draw(recorder, resources, pipeline, draw, &bound, map, colours)?;
             }
             if let Some(environment) = &scene.environment {
                 recorder.bind_graphics(
@@ -264,9 +282,11 @@ fn record_draw(
     pipeline: &GraphicsPipeline,
     draw: &Draw,
     bound: &[Binding],
+    map: Option<&[Binding; 4]>,
     colours: Option<(&VertexColours, (u64, u64))>,
 ) -> Result<(), GpuError> {
     let mut bindings = bound.to_vec();
+    bindings.extend(map.into_iter().flatten().cloned());
     bindings.extend([Binding::sampled(1, draw.base_colour.clone()), Binding::sampler(2, &draw.sampler)]);
     recorder.bind_graphics(pipeline, &bindings)?;
     recorder.push_constants(&draw.material)?;
@@ -275,8 +295,12 @@ fn record_draw(
     if let Some((colours, (offset, size))) = colours {
         recorder.bind_vertex_buffer(2, resources.buffer(&colours.buffer)?.slice(offset, size)?)?;
     }
+    let next = 2 + u32::from(colours.is_some());
     if let Some(normals) = &draw.mesh.normals {
-        recorder.bind_vertex_buffer(2 + u32::from(colours.is_some()), normals)?;
+        recorder.bind_vertex_buffer(next, normals)?;
+    }
+    if let (Some(tangents), Some(_)) = (&draw.mesh.tangents, map) {
+        recorder.bind_vertex_buffer(next + 1, tangents)?;
     }
     recorder.bind_index_buffer(&draw.mesh.indices)?;
     recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
@@ -291,11 +315,34 @@ const DRAW_BINDINGS: [BindingDesc; 5] = [
     BindingDesc::new(4, BindingKind::StorageBuffer),
 ];
 
+/// For a surface with a normal map: the map, what is kept of its coarser levels, and how each is sampled.
+const MAPPED_BINDINGS: [BindingDesc; 8] = [
+    BindingDesc::new(0, BindingKind::UniformBuffer),
+    BindingDesc::new(1, BindingKind::SampledImage),
+    BindingDesc::new(2, BindingKind::Sampler),
+    BindingDesc::new(3, BindingKind::UniformBuffer),
+    BindingDesc::new(5, BindingKind::SampledImage),
+    BindingDesc::new(6, BindingKind::Sampler),
+    BindingDesc::new(7, BindingKind::SampledImage),
+    BindingDesc::new(8, BindingKind::Sampler),
+];
+
+/// What the vertex stage hands on of a surface.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Inputs {
+    /// Texture coordinates and the light of the vertex.
+    Unlit,
+    /// Place and normal as well: the scene has lights.
+    Lit,
+    /// Tangent as well: the surface has a normal map.
+    Mapped,
+}
+
 fn scene_pipeline(
     context: &Context,
     hdr: vk::Format,
     relight: bool,
-    lights: bool,
+    inputs: Inputs,
     fragment: &[u32],
     bindings: &[BindingDesc],
 ) -> Result<GraphicsPipeline, GpuError> {
@@ -308,10 +355,17 @@ fn scene_pipeline(
     let normal = [attribute(3, vk::Format::R32G32B32_SFLOAT)];
     let mut buffers = vec![layout(12, &position[..]), layout(8, &texture_coordinates[..])];
     buffers.extend(relight.then(|| layout(16, &colour[..])));
-    buffers.extend(lights.then(|| layout(12, &normal[..])));
+    let tangent = [attribute(4, vk::Format::R32G32B32A32_SFLOAT)];
+    buffers.extend((inputs != Inputs::Unlit).then(|| layout(12, &normal[..])));
+    buffers.extend((inputs == Inputs::Mapped).then(|| layout(16, &tangent[..])));
+    let vertex = match inputs {
+        #[cfg(feature = "normals")]
+        Inputs::Mapped => shaders::mapped_vertex(relight),
+        _ => shaders::scene_vertex(relight, inputs != Inputs::Unlit),
+    };
     context.create_graphics_pipeline(&GraphicsPipelineDesc {
         name: if relight { "scene, relit" } else { "scene, ambient" },
-        vertex: &shaders::scene_vertex(relight, lights),
+        vertex: &vertex,
         fragment: Some(fragment),
         bindings,
         push_constant_size: size_of::<MaterialConstants>() as u32,

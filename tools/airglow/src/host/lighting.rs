@@ -90,6 +90,8 @@ impl Source {
         };
         #[cfg(feature = "fog")]
         let requirements = requirements.and(&super::fog::requirements(scene));
+        #[cfg(feature = "normals")]
+        let requirements = requirements.and(&super::mapped::requirements(scene));
         requirements
     }
 }

@@ -2,13 +2,16 @@
 //!
 //! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
 //! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws, `lights` and `fog` what they take of the scene's lights and medium; `renderer` owns it all.
+//! draws, `lights`, `fog` and `mapped` what they take of the scene's lights, medium and normal maps; `renderer`
+//! owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;
 pub mod environment_samples;
+#[cfg(feature = "relight")]
+pub mod filter;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
 #[cfg(feature = "relight")]
@@ -18,6 +21,8 @@ pub mod holes;
 pub mod lighting;
 #[cfg(feature = "relight")]
 pub mod lights;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod mapped;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;

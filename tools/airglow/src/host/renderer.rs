@@ -8,17 +8,21 @@ use airglow_gpu::{
     Buffer, Calibration, Execution, FrameTimes, Health, Imports, Label, Location, Timing, TimingSummary,
 };
 use airglow_graph::{BufferDesc, ImageDesc, LeftOut, Plan};
+use airglow_math::sequence;
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
 
 use super::device::Device;
 use super::draw::Pipelines;
 use super::environment_samples::EnvironmentSamples;
+use super::filter::Filter;
 #[cfg(feature = "fog")]
 use super::fog::SceneFog;
 use super::frame::{self, Declared, Turning};
 use super::lighting::{self, Lighting, Source};
 use super::lights::LightsConstants;
+#[cfg(feature = "normals")]
+use super::mapped::MappedMaterials;
 use super::scene::{self, DeviceScene};
 use super::unread;
 use super::upload;
@@ -143,8 +147,26 @@ pub const WARM_UP: usize = 2;
 impl<'d> Renderer<'d> {
     /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
     pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
+        Self::with_filter(device, scene, source, picture, Filter::default())
+    }
+
+    /// The same with normal maps filtered in a stated way.
+    #[cfg_attr(
+        not(feature = "normals"),
+        expect(unused_variables, reason = "without the room no map is drawn")
+    )]
+    pub fn with_filter(
+        device: &'d Device<'d>,
+        scene: &Scene,
+        source: &Source,
+        picture: [u32; 2],
+        filter: Filter,
+    ) -> Outcome<Self> {
         let context = device.context();
-        #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only fog names tables"))]
+        #[cfg_attr(
+            not(any(feature = "fog", feature = "normals")),
+            expect(unused_mut, reason = "only rooms add to draws")
+        )]
         let mut device_scene =
             device.run(|recorder| scene::upload(recorder, scene)).map_err(Failure::work)?;
         let ambient = match &scene.environment {
@@ -168,8 +190,17 @@ impl<'d> Renderer<'d> {
         let fogged = fog.as_ref().and_then(SceneFog::fragment);
         #[cfg(not(feature = "fog"))]
         let fogged: Option<Vec<u32>> = None;
+        #[cfg(feature = "normals")]
+        let maps = MappedMaterials::new(device, scene, filter)?;
+        #[cfg(feature = "normals")]
+        maps.attach(scene, &mut device_scene);
+        #[cfg(feature = "normals")]
+        let (mapped, about_maps) = (maps.fragments(), maps.left_out);
+        #[cfg(not(feature = "normals"))]
+        let (mapped, about_maps) = (Vec::new(), Vec::new());
         let lights = !scene.lights.is_empty();
-        let pipelines = Pipelines::new(context, hdr, lights, fogged.as_deref()).map_err(Failure::work)?;
+        let pipelines =
+            Pipelines::new(context, hdr, lights, fogged.as_deref(), &mapped).map_err(Failure::work)?;
         Ok(Self {
             device,
             scene: Arc::new(device_scene),
@@ -185,7 +216,7 @@ impl<'d> Renderer<'d> {
             lights: LightsConstants::of_scene(scene),
             #[cfg(feature = "fog")]
             fog,
-            unread: unread::unread(scene),
+            unread: unread::unread(scene).into_iter().chain(about_maps).collect(),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
             linear,
@@ -295,6 +326,26 @@ impl<'d> Renderer<'d> {
         };
         let execution = Execution::prepare(context, plan).map_err(Failure::work)?;
         Ok(Compiled { execution, imports, timing, turning })
+    }
+
+    /// The mean of `passes` frames, each moved by its own fraction of a sample: scene-linear.
+    pub fn average(&mut self, settings: &Settings, passes: u32) -> Outcome<FloatImage> {
+        let Compiled { mut execution, imports, turning, .. } = self.compile(settings, 1, false)?;
+        let size = settings.picture_size();
+        let mut sums = vec![0.0_f64; 3 * size[0] as usize * size[1] as usize];
+        let sides = settings.size.map(|side| (side * settings.samples) as f32);
+        for pass in 0..passes {
+            let [x, y] = sequence::sobol(pass, 0).map(|place| 2.0 * place as f32 - 1.0);
+            let offset = if passes > 1 { [x / sides[0], y / sides[1]] } else { [0.0; 2] };
+            for (shared, view) in turning.views.iter().zip(self.views(settings, settings.turn)) {
+                shared.set(view.moved(offset));
+            }
+            self.device.frames(&mut execution, &imports, None, 1, |_| Ok(()))?;
+            let linear: Vec<f32> = self.linear.read(0, sums.len()).map_err(Failure::work)?;
+            sums.iter_mut().zip(linear).for_each(|(sum, value)| *sum += f64::from(value));
+        }
+        let values: Vec<f32> = sums.iter().map(|sum| (sum / f64::from(passes)) as f32).collect();
+        Ok(view::picture(size, &values))
     }
 
     /// Draws `frames` frames and reads the last one back.

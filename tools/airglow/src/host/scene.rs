@@ -1,10 +1,10 @@
 //! The scene on the device: what the forward draw binds.
 
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, Context, GpuError, ImageView, Recorder, Sampler, SamplerDesc};
+use airglow_gpu::{Binding, Buffer, Context, GpuError, ImageView, Recorder, Sampler, SamplerDesc};
 use airglow_graph::Access;
 use airglow_scene::{
-    AlphaMode, Encoding, Environment, IDENTITY_UV, Image, Material, MaterialClass, Mesh, Scene, Wrap,
+    AlphaMode, Encoding, Environment, IDENTITY_UV, Image, Material, MaterialClass, Mesh, Scene, Texture, Wrap,
 };
 use bytemuck::{Pod, Zeroable};
 use half::f16;
@@ -38,6 +38,18 @@ pub struct Draw {
     pub sampler: Sampler,
     /// Push constants.
     pub material: MaterialConstants,
+    /// The normal map, where there is one to be drawn.
+    pub mapped: Option<Mapped>,
+}
+
+/// A material's normal map on the device.
+#[derive(Clone)]
+#[cfg_attr(not(feature = "normals"), expect(dead_code, reason = "only the room of normal maps makes it"))]
+pub struct Mapped {
+    /// Array layers of what is kept of its coarser levels.
+    pub layers: u32,
+    /// The map, what is kept of its coarser levels, and their samplers.
+    pub bindings: [Binding; 4],
 }
 
 /// The arrays of a mesh; instances share them.
@@ -47,6 +59,8 @@ pub struct MeshBuffers {
     pub positions: Buffer,
     /// `[f32; 3]` a vertex, where the scene has lights.
     pub normals: Option<Buffer>,
+    /// `[f32; 4]` a vertex, where the scene has lights and the mesh has them.
+    pub tangents: Option<Buffer>,
     /// `[f32; 2]` a vertex.
     pub texture_coordinates: Buffer,
     /// `u32` each.
@@ -87,6 +101,7 @@ pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene,
             sampler: sampler(context, material)?,
             material: MaterialConstants::new(instance.transform, material),
             mesh: meshes[instance.mesh].clone(),
+            mapped: None,
         });
     }
     let environment = match &scene.environment {
@@ -100,11 +115,14 @@ const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 
 fn upload_mesh(recorder: &mut Recorder<'_>, mesh: &Mesh, lit: bool) -> Result<MeshBuffers, GpuError> {
     let normals = lit.then(|| upload::buffer(recorder, &mesh.name, &mesh.normals, Access::VertexBuffer));
+    let tangents = (lit && !mesh.tangents.is_empty())
+        .then(|| upload::buffer(recorder, &mesh.name, &mesh.tangents, Access::VertexBuffer));
     let blank = vec![[0.0_f32; 2]; mesh.positions.len()];
     let texture_coordinates = if mesh.uv0.is_empty() { &blank } else { &mesh.uv0 };
     Ok(MeshBuffers {
         positions: upload::buffer(recorder, &mesh.name, &mesh.positions, Access::VertexBuffer)?,
         normals: normals.transpose()?,
+        tangents: tangents.transpose()?,
         texture_coordinates: upload::buffer(recorder, &mesh.name, texture_coordinates, Access::VertexBuffer)?,
         indices: upload::buffer(recorder, &mesh.name, &mesh.indices, Access::IndexBuffer)?,
         index_count: mesh.indices.len() as u32,
@@ -137,15 +155,20 @@ fn upload_environment(recorder: &mut Recorder<'_>, environment: &Environment) ->
 fn sampler(context: &Context, material: &Material) -> Result<Sampler, GpuError> {
     let mut desc = SamplerDesc::linear("base colour");
     if let Some(texture) = &material.base_color_texture {
-        let [u, v] = texture.wrap.map(|wrap| match wrap {
-            Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
-            Wrap::MirroredRepeat => vk::SamplerAddressMode::MIRRORED_REPEAT,
-            Wrap::ClampToEdge => vk::SamplerAddressMode::CLAMP_TO_EDGE,
-        });
-        desc.address = [u, v, vk::SamplerAddressMode::CLAMP_TO_EDGE];
+        desc.address = address(texture);
         desc.filter = if texture.nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
     }
     context.create_sampler(&desc)
+}
+
+/// What lies outside a texture.
+pub fn address(texture: &Texture) -> [vk::SamplerAddressMode; 3] {
+    let [u, v] = texture.wrap.map(|wrap| match wrap {
+        Wrap::Repeat => vk::SamplerAddressMode::REPEAT,
+        Wrap::MirroredRepeat => vk::SamplerAddressMode::MIRRORED_REPEAT,
+        Wrap::ClampToEdge => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    });
+    [u, v, vk::SamplerAddressMode::CLAMP_TO_EDGE]
 }
 
 impl MaterialConstants {

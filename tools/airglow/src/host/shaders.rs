@@ -1,5 +1,8 @@
 //! The demo host's own SPIR-V, as `cargo run -p xtask -- shaders` makes it.
 
+#[cfg(feature = "normals")]
+use super::filter::Filter;
+
 /// The words of a module in `shaders/spirv/host`, or in a room's folder.
 macro_rules! module {
     ($name:literal) => {
@@ -14,6 +17,30 @@ macro_rules! module {
             ".spv"
         )))
     };
+}
+
+/// The vertex stage of the forward draw of surfaces with normal maps.
+#[cfg(feature = "normals")]
+pub fn mapped_vertex(relight: bool) -> Vec<u32> {
+    match relight {
+        false => module!("scene_vertex.HOST_LIGHTS.HOST_TANGENTS"),
+        true => module!("scene_vertex.AIRGLOW_RELIGHT.HOST_LIGHTS.HOST_TANGENTS"),
+    }
+}
+
+/// The fragment stage of the forward draw of surfaces with normal maps, of so many layers.
+#[cfg(feature = "normals")]
+pub fn mapped_fragment(filter: Filter, layers: u32) -> Vec<u32> {
+    match (filter, layers) {
+        (Filter::Lobes, 1) => module!("normals/", "scene.lobes.MAPPED_LAYERS1"),
+        (Filter::Lobes, 2) => module!("normals/", "scene.lobes.MAPPED_LAYERS2"),
+        (Filter::Lobes, 4) => module!("normals/", "scene.lobes.MAPPED_LAYERS4"),
+        (Filter::Lobes, _) => module!("normals/", "scene.lobes.MAPPED_LAYERS6"),
+        (Filter::Toksvig, _) => module!("normals/", "scene.toksvig"),
+        (Filter::Lean, _) => module!("normals/", "scene.lean"),
+        (Filter::Mip, _) => module!("normals/", "scene.mip"),
+        (Filter::Texels, _) => module!("normals/", "scene.texels"),
+    }
 }
 
 /// The vertex stage of the forward draw; with `relight` it reads the vertex array that the pass renders to, with

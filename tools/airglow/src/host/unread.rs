@@ -1,20 +1,29 @@
 //! What a scene holds that this host does not draw: said in a warning and in the plan, never silently dropped.
 
 use airglow_graph::LeftOut;
-use airglow_scene::Scene;
+use airglow_scene::{Material, Scene};
 
 /// Lights that a draw takes; further ones are left out.
 pub const MAX_LIGHTS: usize = 64;
 
 /// One record for each kind of content that no pass of this frame uses.
 pub fn unread(scene: &Scene) -> Vec<LeftOut> {
-    let normal_textures = scene.materials.iter().filter(|material| material.normal_texture.is_some()).count();
+    #[cfg(feature = "normals")]
+    let drawn = |material: &Material| super::mapped::is_drawn(scene, material);
+    #[cfg(not(feature = "normals"))]
+    let drawn = |_: &Material| false;
+    let unread = |material: &&Material| material.normal_texture.is_some() && !drawn(material);
+    let normal_textures = scene.materials.iter().filter(unread).count();
     let kinds = [
         (scene.lights.len().saturating_sub(MAX_LIGHTS), "further lights", "fewer lights: a draw takes 64"),
         (usize::from(scene.medium.is_some() && !cfg!(feature = "fog")), "media", "the room of the fog pass"),
         (scene.emitters.len(), "near emitters", "a pass that samples their radiance"),
         (scene.blockers.len(), "blockers", "a pass that casts their shadows"),
-        (normal_textures, "normal textures", "a pass that filters and shades them"),
+        (
+            normal_textures,
+            "normal textures",
+            "lights of the scene's own in clear air, and the room of normal maps",
+        ),
         (scene.skins.len(), "skins (drawn in their bind pose)", "a host that moves their vertices"),
         (scene.animations.len(), "animations", "a host that plays them"),
     ];

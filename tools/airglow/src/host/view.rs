@@ -33,6 +33,18 @@ impl ViewConstants {
     }
 }
 
+impl ViewConstants {
+    /// The same, moved in the picture, whose sides are 2 long.
+    #[must_use]
+    pub fn moved(self, [x, y]: [f32; 2]) -> Self {
+        let moved = |matrix| {
+            let move_by = Mat4::from_translation(Vec3::new(x, y, 0.0));
+            (move_by * Mat4::from_cols_array_2d(&matrix)).to_cols_array_2d()
+        };
+        Self { clip_from_world: moved(self.clip_from_world), ..self }
+    }
+}
+
 /// The view of a plan that is recorded again: what was set last counts.
 #[derive(Clone, Debug)]
 pub struct SharedView(Arc<Mutex<ViewConstants>>);

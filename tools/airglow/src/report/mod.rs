@@ -6,6 +6,8 @@ pub mod fog;
 pub mod html;
 pub mod interleave;
 pub mod labels;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod lines;
 pub mod model;
 pub mod pareto;
 pub mod plot;

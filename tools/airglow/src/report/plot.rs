@@ -10,7 +10,8 @@ use super::pareto;
 use crate::failure::{Failure, Outcome};
 
 const SIZE: (u32, u32) = (720, 440);
-const COLOURS: [RGBColor; 6] = [
+/// Of lines and points, in their order.
+pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(31, 90, 166),
     RGBColor(196, 78, 34),
     RGBColor(34, 128, 70),
@@ -93,14 +94,14 @@ fn dots(cost: Cost, column: Column, curve: &Curve) -> Vec<Dot> {
 }
 
 /// The smallest and largest value with a margin that is even on a logarithmic axis, and wide enough to hold some ticks.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::MAX, f64::MIN_POSITIVE), |(low, high), v| (low.min(v), high.max(v)));
     let margin = (high / low).powf(0.12).max(1.3).max((6.0 * low / high).sqrt());
     (low / margin, high * margin)
 }
 
 /// Round values within a range: 1, 2 and 5 times the powers of ten, or the powers alone where those are many.
-fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+pub(super) fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let steps: &[f64] = if last - first > 3 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let all = (first..=last).flat_map(|power| steps.iter().map(move |step| step * 10.0_f64.powi(power)));
@@ -166,7 +167,8 @@ fn draw(
     Ok(())
 }
 
-fn short(value: f64) -> String {
+/// A number in few digits.
+pub(super) fn short(value: f64) -> String {
     if (0.01..1e6).contains(&value) {
         format!("{}", (value * 1e4).round() / 1e4)
     } else {

@@ -1,0 +1,145 @@
+// A normal map seen through a pixel: the lobes of what lies under it, by the functions of the normals room, or what others
+// keep of it, and what these reflect of the scene's lights.
+//
+// FILTER_LOBES    mixtures of MAPPED_LAYERS lobes
+// FILTER_TOKSVIG  the mean normal and its length (Toksvig 2005)
+// FILTER_LEAN     mean and moments of the slope (Olano and Baker 2010)
+// FILTER_MIP      the mean normal, scaled to length 1
+// FILTER_TEXELS   the map itself at every distance: what many samples a pixel make the truth
+
+#include "normals/microfacet.glsl"
+
+layout(set = 0, binding = 5) uniform texture2D normal_map; // RGB = normal * 0.5 + 0.5
+layout(set = 0, binding = 6) uniform sampler normal_map_sampler;
+layout(set = 0, binding = 7) uniform texture2DArray coarse_normals; // from half the size of the map down
+layout(set = 0, binding = 8) uniform sampler coarse_normals_sampler;
+
+// Samples along the longer axis of a pixel's footprint: what is kept is linear, so that it adds up.
+const float MAPPED_TAPS = 8.0;
+
+// What a pixel sees: the interpolated normal of the map, by its share, and what is kept of the distribution.
+struct Mapped {
+    vec3 normal;
+    float share;
+    vec4 kept[MAPPED_LAYERS];
+};
+
+vec3 map_normal(vec2 uv)
+{
+    vec3 normal = textureLod(sampler2D(normal_map, normal_map_sampler), uv, 0.0).xyz * 2.0 - 1.0;
+    return dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0, 0.0, 1.0);
+}
+
+Mapped mapped_at(vec2 uv)
+{
+    Mapped mapped;
+    mapped.normal = map_normal(uv);
+    mapped.share = 1.0;
+    for (int i = 0; i < MAPPED_LAYERS; ++i) { mapped.kept[i] = vec4(0.0); }
+#ifndef FILTER_TEXELS
+    vec2 size = vec2(textureSize(sampler2D(normal_map, normal_map_sampler), 0));
+    vec2 across = dFdx(uv);
+    vec2 along = dFdy(uv);
+    float a = length(across * size);
+    float b = length(along * size);
+    vec2 longer = a > b ? across : along;
+    float taps = clamp(ceil(max(a, b) / max(min(a, b), 1e-3)), 1.0, MAPPED_TAPS);
+    float level = log2(max(max(a, b) / taps, 1e-6));
+    // Where a single texel is seen, the normal itself is shaded; the first level of what is kept is level 1.
+    mapped.share = clamp(1.0 - level, 0.0, 1.0);
+    if (mapped.share < 1.0) {
+        for (int i = 0; i < MAPPED_LAYERS; ++i) {
+            for (float tap = 0.5; tap < taps; tap += 1.0) {
+                vec3 place = vec3(uv + longer * (tap / taps - 0.5), float(i));
+                vec4 found = textureLod(sampler2DArray(coarse_normals, coarse_normals_sampler), place, level - 1.0);
+                mapped.kept[i] += found / taps;
+            }
+        }
+    }
+#endif
+    return mapped;
+}
+
+// D of GGX.
+float normal_facets(float nh, float alpha)
+{
+    float square = alpha * alpha;
+    float denominator = nh * nh * (square - 1.0) + 1.0;
+    return square / (PI * denominator * denominator);
+}
+
+// Diffuse reflection and, without Fresnel's factor, that of facets, of a single normal.
+vec2 normal_reflected(vec3 normal, float alpha, vec3 l, vec3 v, vec3 h)
+{
+    float nl = max(dot(normal, l), 0.0);
+    float nh = max(dot(normal, h), 0.0);
+    return nl * vec2(1.0 / PI, normal_facets(nh, alpha) * normals_masking(alpha, nl, max(dot(normal, v), 1e-4)));
+}
+
+// The same of what is kept of the distribution.
+vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
+{
+#if defined(FILTER_LOBES)
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < MAPPED_LAYERS; ++i) {
+        vec4 lobe = mapped.kept[i];
+        if (lobe.w > 1e-4) {
+            sum += vec2(normals_lambert(lobe, l), normals_torrance_sparrow(lobe, alpha, l, v, h));
+        }
+    }
+    return sum;
+#elif defined(FILTER_TOKSVIG)
+    vec3 mean = mapped.kept[0].xyz;
+    float size = clamp(length(mean), 1e-3, 1.0);
+    float exponent = 2.0 / (alpha * alpha) - 2.0;
+    float lowered = exponent * size / (size + exponent * (1.0 - size));
+    return normal_reflected(mean / size, sqrt(2.0 / (lowered + 2.0)), l, v, h);
+#elif defined(FILTER_LEAN)
+    vec2 mean = mapped.kept[0].xy;
+    vec3 moments = mapped.kept[1].xyz; // xx, xy, yy
+    vec3 normal = normalize(vec3(mean, 1.0));
+    vec2 reflected = normal_reflected(normal, alpha, l, v, h);
+    if (h.z <= 0.0) { return vec2(reflected.x, 0.0); }
+    float width = 0.5 * alpha * alpha;
+    float xx = max(moments.x - mean.x * mean.x, 0.0) + width;
+    float yy = max(moments.z - mean.y * mean.y, 0.0) + width;
+    float xy = moments.y - mean.x * mean.y;
+    float determinant = max(xx * yy - xy * xy, width * width);
+    vec2 offset = h.xy / h.z - mean;
+    float tail = 1.0 + 0.5 * (yy * offset.x * offset.x - 2.0 * xy * offset.x * offset.y + xx * offset.y * offset.y) / determinant;
+    float cosine = max(dot(normal, h), h.z);
+    float facets = 1.0 / (2.0 * PI * sqrt(determinant) * cosine * cosine * cosine * cosine * tail * tail);
+    float nl = max(dot(normal, l), 0.0);
+    float widened = min(sqrt(xx + yy), 1.0);
+    return vec2(reflected.x, nl * facets * normals_masking(widened, nl, max(dot(normal, v), 1e-4)));
+#else
+    return normal_reflected(normalize(mapped.kept[0].xyz + vec3(0.0, 0.0, 1e-6)), alpha, l, v, h);
+#endif
+}
+
+// Radiance towards the eye; `surface` is metallic and roughness, `tangent` has the sign of the bitangent as w.
+vec3 lights_reflected_mapped(vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4 tangent, vec3 position, vec3 eye)
+{
+    vec3 n = normalize(normal);
+    vec3 t = normalize(tangent.xyz - n * dot(n, tangent.xyz));
+    vec3 b = tangent.w * cross(n, t);
+    vec3 towards_eye = normalize(eye - position);
+    if (dot(n, towards_eye) < 0.0) { n = -n; }
+    vec3 v = vec3(dot(towards_eye, t), dot(towards_eye, b), dot(towards_eye, n));
+    float alpha = max(surface.y * surface.y, 0.002);
+    vec3 f0 = mix(vec3(0.04), base, surface.x);
+    Mapped mapped = mapped_at(uv);
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < lights.count.x; ++i) {
+        vec3 towards;
+        vec3 irradiance = light_irradiance(lights.lights[i], position, towards);
+        vec3 l = vec3(dot(towards, t), dot(towards, b), dot(towards, n));
+        vec3 h = normalize(l + v);
+        vec2 reflected = vec2(0.0);
+        if (mapped.share > 0.0) { reflected += mapped.share * normal_reflected(mapped.normal, alpha, l, v, h); }
+        if (mapped.share < 1.0) { reflected += (1.0 - mapped.share) * kept_reflected(mapped, alpha, l, v, h); }
+        vec3 fresnel = f0 + (1.0 - f0) * pow(clamp(1.0 - dot(l, h), 0.0, 1.0), 5.0);
+        sum += irradiance * ((1.0 - fresnel) * (1.0 - surface.x) * base * reflected.x + fresnel * reflected.y);
+    }
+    return sum;
+}

@@ -1,0 +1,186 @@
+//! The scene's normal maps, filtered by the normals room, or as others filter them, for pictures to compare.
+
+use std::collections::BTreeSet;
+
+use airglow::normals::rivals::{self, Lean};
+use airglow::normals::{NormalMap, Normals, Sample, Settings};
+use airglow_gpu::ash::vk;
+use airglow_gpu::{Binding, Execution, ImageView, Imports, Requirements, SamplerDesc, ViewDesc};
+use airglow_graph::{Access, Graph, LeftOut};
+use airglow_scene::{Image, Material, MaterialClass, Scene};
+
+use super::device::Device;
+use super::filter::Filter;
+use super::scene::{DeviceScene, Mapped};
+use super::{scene, shaders, upload};
+use crate::failure::{Failure, Outcome};
+
+/// The maps of a scene, one for each material that has one.
+pub struct MappedMaterials {
+    /// What stands for the normals under a pixel.
+    pub filter: Filter,
+    /// What was left out, as plans say it.
+    pub left_out: Vec<LeftOut>,
+    materials: Vec<Option<Mapped>>,
+}
+
+/// Whether the normal map of a material is drawn: the scene's own lights shine on it, in clear air.
+pub fn is_drawn(scene: &Scene, material: &Material) -> bool {
+    let lit = !scene.lights.is_empty() && scene.medium.is_none() && material.class != MaterialClass::Unlit;
+    lit && material.normal_texture.is_some()
+}
+
+/// What the device must offer for a scene.
+pub fn requirements(scene: &Scene) -> Requirements {
+    match scene.materials.iter().any(|material| is_drawn(scene, material)) {
+        true => Normals::requirements(&Settings::default()),
+        false => Requirements::engine(),
+    }
+}
+
+impl MappedMaterials {
+    /// Filters the maps of a scene.
+    pub fn new(device: &Device<'_>, scene: &Scene, filter: Filter) -> Outcome<Self> {
+        let mut maps = Self { filter, left_out: Vec::new(), materials: Vec::new() };
+        for material in &scene.materials {
+            let mapped = match is_drawn(scene, material) {
+                true => maps.read(device, scene, material)?,
+                false => None,
+            };
+            maps.materials.push(mapped);
+        }
+        Ok(maps)
+    }
+
+    /// Gives each draw the map of its material.
+    pub fn attach(&self, scene: &Scene, device_scene: &mut DeviceScene) {
+        for (draw, instance) in device_scene.draws.iter_mut().zip(&scene.instances) {
+            // A mesh without texture coordinates has no tangents, and nothing to look its map up by.
+            let tangents = draw.mesh.tangents.is_some();
+            draw.mapped = self.materials[instance.material].clone().filter(|_| tangents);
+        }
+    }
+
+    /// The fragment stages that draw them, each by the layers that it reads.
+    pub fn fragments(&self) -> Vec<(u32, Vec<u32>)> {
+        let layers: BTreeSet<u32> = self.materials.iter().flatten().map(|mapped| mapped.layers).collect();
+        layers.into_iter().map(|layers| (layers, shaders::mapped_fragment(self.filter, layers))).collect()
+    }
+
+    fn read(&mut self, device: &Device<'_>, scene: &Scene, material: &Material) -> Outcome<Option<Mapped>> {
+        let Some(texture) = &material.normal_texture else { return Ok(None) };
+        let Some(image) = scene.images.get(texture.image) else { return Ok(None) };
+        let image = scaled(image, material.normal_scale);
+        let vectors: Vec<[f32; 3]> = image.pixels.iter().map(|&texel| vector(texel)).collect();
+        let map = NormalMap::from_vectors(image.width as usize, image.height as usize, &vectors)
+            .map_err(|error| Failure::input(format!("{}: {error}", image.name)))?;
+        let coarse = match self.filter {
+            Filter::Lobes => match self.lobes(device, &map)? {
+                Some(lobes) => lobes,
+                None => kept(device, &map, mean)?,
+            },
+            Filter::Lean => kept(device, &map, slopes)?,
+            Filter::Toksvig | Filter::Mip | Filter::Texels => kept(device, &map, mean)?,
+        };
+        let context = device.context();
+        let level = (image.width, image.height, image.pixels);
+        let format = vk::Format::R8G8B8A8_UNORM;
+        let sampler = |nearest| {
+            let filter = if nearest { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
+            let desc =
+                SamplerDesc { filter, address: scene::address(texture), ..SamplerDesc::linear("normals") };
+            context.create_sampler(&desc).map_err(Failure::work)
+        };
+        let own = device
+            .run(|recorder| upload::image(recorder, &image.name, format, &[level], Access::FragmentSampled))
+            .map_err(Failure::work)?;
+        Ok(Some(Mapped {
+            layers: coarse.desc().layers,
+            bindings: [
+                Binding::sampled(5, own),
+                Binding::sampler(6, &sampler(texture.nearest)?),
+                Binding::sampled(7, coarse),
+                Binding::sampler(8, &sampler(false)?),
+            ],
+        }))
+    }
+
+    /// The room's own texture, built in a frame before all others.
+    fn lobes(&mut self, device: &Device<'_>, map: &NormalMap) -> Outcome<Option<ImageView>> {
+        let context = device.context();
+        let normals = Normals::new(context, Settings::default()).map_err(Failure::work)?;
+        let mut build = normals.build(context, map).map_err(Failure::input)?;
+        let (mut graph, mut imports) = (Graph::new(), Imports::new());
+        build.add(&mut graph, &mut imports, usize::MAX);
+        self.left_out.extend(build.left_out().iter().cloned());
+        let Some(texture) = build.texture() else { return Ok(None) };
+        let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
+        let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
+        device.frames(&mut execution, &imports, None, 1, |_| Ok(()))?;
+        array(&texture.image).map(Some)
+    }
+}
+
+/// All mips and layers of an image, as an array even of one layer.
+fn array(image: &airglow_gpu::Image) -> Outcome<ImageView> {
+    let desc = image.desc();
+    let dimension = vk::ImageViewType::TYPE_2D_ARRAY;
+    image
+        .view(ViewDesc { dimension, base_mip: 0, mips: desc.mips, base_layer: 0, layers: desc.layers })
+        .map_err(Failure::work)
+}
+
+/// The vector that a texel holds.
+fn vector([r, g, b, _]: [u8; 4]) -> [f32; 3] {
+    [r, g, b].map(|value| f32::from(value) / 127.5 - 1.0)
+}
+
+/// The map with x and y of its normals multiplied.
+fn scaled(image: &Image, scale: f32) -> Image {
+    let mut image = image.clone();
+    if scale != 1.0 {
+        for texel in &mut image.pixels {
+            let [x, y, z] = vector(*texel);
+            let normal = glam::Vec3::new(scale * x, scale * y, z).normalize_or_zero();
+            let [r, g, b] = (127.5 * normal + 128.0).to_array().map(|value| value as u8);
+            *texel = [r, g, b, 255];
+        }
+    }
+    image
+}
+
+/// The mean normal: a single lobe, too.
+fn mean(footprint: &[Sample]) -> Vec<[f32; 4]> {
+    vec![rivals::mean(footprint).extend(1.0).as_vec4().to_array()]
+}
+
+/// Mean of the slope; means of its products.
+fn slopes(footprint: &[Sample]) -> Vec<[f32; 4]> {
+    let Lean { mean, moments } = Lean::new(footprint);
+    let products = glam::DVec3::new(moments.x_axis.x, moments.x_axis.y, moments.y_axis.y);
+    vec![mean.extend(0.0).extend(0.0), products.extend(0.0)]
+        .into_iter()
+        .map(|layer| layer.as_vec4().to_array())
+        .collect()
+}
+
+/// An f32 texture from level 1 on (or of the one texel that there is) of what `keep` makes of each footprint.
+fn kept(device: &Device<'_>, map: &NormalMap, keep: fn(&[Sample]) -> Vec<[f32; 4]>) -> Outcome<ImageView> {
+    let last = map.levels() - 1;
+    let mut levels = Vec::new();
+    for level in last.min(1)..=last {
+        let [width, height] = map.size(level);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let texels = places.map(|(x, y)| Ok(keep(&map.footprint(level, x, y)?)));
+        let texels: Vec<_> =
+            texels.collect::<Result<_, airglow::normals::NormalsError>>().map_err(Failure::work)?;
+        let layers = texels.first().map_or(0, Vec::len);
+        let texels: Vec<[f32; 4]> =
+            (0..layers).flat_map(|layer| texels.iter().map(move |texel| texel[layer])).collect();
+        levels.push((width as u32, height as u32, texels));
+    }
+    let format = vk::Format::R32G32B32A32_SFLOAT;
+    let uploaded = device
+        .run(|recorder| upload::array(recorder, "kept normals", format, &levels, Access::FragmentSampled));
+    array(&uploaded.map_err(Failure::work)?)
+}

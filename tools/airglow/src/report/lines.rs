@@ -1,0 +1,89 @@
+//! Lines over two logarithmic axes, as SVG text.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::plot::{COLOURS, range, short, ticks};
+use crate::failure::{Failure, Outcome};
+
+const SIZE: (u32, u32) = (720, 400);
+
+/// A line and its name.
+pub struct Series {
+    /// In the legend.
+    pub name: String,
+    /// Positive values.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// The SVG of some lines; the first is drawn broad, as the truth that others are seen against.
+pub fn svg(x_label: &str, y_label: &str, series: &[Series]) -> Outcome<String> {
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        draw(&area, [x_label, y_label], series)
+            .map_err(|error| Failure::work(format!("could not draw a plot: {error}")))?;
+    }
+    Ok(svg)
+}
+
+fn draw(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    [x_label, y_label]: [&str; 2],
+    series: &[Series],
+) -> Result<(), Box<dyn std::error::Error>> {
+    area.fill(&WHITE)?;
+    let all = || series.iter().flat_map(|series| &series.points);
+    let (x, y) = (range(all().map(|point| point.0)), range(all().map(|point| point.1)));
+    let mut chart =
+        ChartBuilder::on(area).margin(12).x_label_area_size(42).y_label_area_size(70).build_cartesian_2d(
+            (x.0..x.1).log_scale().with_key_points(ticks(x)),
+            (y.0..y.1).log_scale().with_key_points(ticks(y)),
+        )?;
+    chart
+        .configure_mesh()
+        .x_desc(x_label)
+        .y_desc(y_label)
+        .label_style(("sans-serif", 13))
+        .x_label_formatter(&|value| short(*value))
+        .y_label_formatter(&|value| short(*value))
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(215, 215, 215))
+        .draw()?;
+    for (index, line) in series.iter().enumerate() {
+        let (colour, width) = match index {
+            0 => (RGBColor(190, 190, 190), 7),
+            _ => (COLOURS[(index - 1) % COLOURS.len()], 2),
+        };
+        chart
+            .draw_series(LineSeries::new(line.points.iter().copied(), colour.stroke_width(width)))?
+            .label(line.name.as_str())
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(width)));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 13))
+        .draw()?;
+    area.present()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plot_names_every_line_and_axis() {
+        let line = |name: &str, slope: f64| Series {
+            name: name.into(),
+            points: (1..9).map(|x| (f64::from(x), slope * f64::from(x))).collect(),
+        };
+        let svg = svg("distance", "brightness", &[line("truth", 1.0), line("ours", 1.1)]).unwrap();
+        for text in ["truth", "ours", "distance", "brightness", "<svg"] {
+            assert!(svg.contains(text), "{text}");
+        }
+    }
+}
