@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use airglow_gpu::{GpuError, Recorder};
 use airglow_radiance::gpu::bench::Bench;
-use airglow_radiance::gpu::{Batch, EmitterTriangle, LightShape, TexelBuffers, TexelSettings, Texels};
+use airglow_radiance::gpu::{LightShape, TexelSettings, Texels};
 use airglow_tests::device::fixture_with;
 
 #[path = "../tests/gpu/scenes.rs"]
@@ -28,22 +28,14 @@ fn main() {
         for (size, rays) in [(16, 1), (8, 4), (16, 2), (16, 4), (32, 2), (64, 1)] {
             let shape = LightShape { order: 4, gradients };
             let texels = Texels::new(bench.context, TexelSettings { shape, size, rays }).unwrap();
-            let packed: Vec<EmitterTriangle> = emitters.iter().map(EmitterTriangle::from).collect();
             let points = scenes::points(SAMPLES);
-            let positions: Vec<[f32; 4]> =
-                points.iter().map(|p| p.extend(0.0).as_vec4().to_array()).collect();
-            let buffers = TexelBuffers {
-                batch: (&bench.upload("batch", &[Batch::new(0, SAMPLES)]).unwrap()).into(),
-                points: (&bench.upload("points", &positions).unwrap()).into(),
-                triangles: (&bench.upload("triangles", &packed).unwrap()).into(),
-                triangle_count: packed.len() as u32,
-                lights: (&bench.scratch("lights", shape.light_bytes(points.len())).unwrap()).into(),
-                gradients: (&bench.scratch("gradients", shape.gradient_bytes(points.len())).unwrap()).into(),
-            };
+            let buffers = bench.buffers(shape, &emitters, &points).unwrap();
             let mut times = Vec::new();
             let mut cpu = 0.0;
             for i in 0..=RUNS {
-                if i == 1 { cpu = -cpu_seconds(); }
+                if i == 1 {
+                    cpu = -cpu_seconds();
+                }
                 let begin = Instant::now();
                 run(&mut |recorder| texels.record(recorder, &buffers)).unwrap();
                 times.push(1e3 * begin.elapsed().as_secs_f64() / f64::from(SAMPLES));

@@ -7,7 +7,8 @@
 
 #define COEFFICIENTS (ORDER * ORDER)
 
-// vec4 of a sample in `lights`: coefficients (RGB, 0), then (solid angle, nearness, 0, 0), then (slope RGB, 0).
+// vec4 of a sample in `lights`: coefficients (RGB, 0), then (solid angle, nearness, 1 where
+// they are exact, 0), then (slope RGB, 0).
 #define LIGHT_STRIDE (COEFFICIENTS + 2)
 #define LIGHT_EXTENT COEFFICIENTS
 #define LIGHT_SLOPE (COEFFICIENTS + 1)

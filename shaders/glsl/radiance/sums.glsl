@@ -8,9 +8,7 @@
 
 #include "common/sh_basis.glsl"
 #include "radiance/sample.glsl"
-#if GRADIENTS
 #include "radiance/slope.glsl"
-#endif
 
 #define LANES 64
 #define ELEMENTS (LIGHT_STRIDE + GRADIENTS * GRADIENT_STRIDE)
@@ -64,8 +62,8 @@ void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
 #define SUMS_RUNS (LANES / SUMS_BLOCK)
 shared vec4 sums_block[SUMS_BLOCK * LANES];
 
-// The same order of additions every time: runs of neighbouring lanes, then the runs.
-void sums_write(vec4 sums[ELEMENTS], uint lane)
+// Writes the sample, if it is wanted. The same order of additions every time: runs of neighbouring lanes, then the runs.
+void sums_write(vec4 sums[ELEMENTS], uint lane, bool wanted)
 {
     [[unroll]] for (int first = 0; first < ELEMENTS; first += SUMS_BLOCK) {
         [[unroll]] for (int i = 0; i < SUMS_BLOCK; ++i) {
@@ -82,7 +80,7 @@ void sums_write(vec4 sums[ELEMENTS], uint lane)
         sums_block[element * SUMS_RUNS + run] = total;
         barrier();
         uint index = uint(first) + lane;
-        if (lane < SUMS_BLOCK && index < uint(ELEMENTS)) {
+        if (wanted && lane < SUMS_BLOCK && index < uint(ELEMENTS)) {
             total = sums_block[lane * SUMS_RUNS];
             for (uint i = 1u; i < SUMS_RUNS; ++i) { total += sums_block[lane * SUMS_RUNS + i]; }
             if (index < uint(LIGHT_STRIDE)) { SAMPLE_LIGHT(index) = total; }

@@ -29,6 +29,7 @@ layout(std430, set = 0, binding = 5) buffer Gradients { vec4 gradients[]; };
 layout(push_constant) uniform Settings {
     uint triangle_count;
     uint size; // texels along a side of a face, a multiple of 8
+    uint keep_exact; // 1: samples that are exact already are left alone
 } settings;
 
 #define SAMPLE_LIGHT(i) lights[(batch.first + gl_WorkGroupID.x) * uint(LIGHT_STRIDE) + (i)]
@@ -166,7 +167,9 @@ void main()
     float tile_side = 2.0 / float(tiles);
     vec4 sums[ELEMENTS];
     sums_clear(sums);
-    for (uint tile = 0u; tile < 6u * tiles * tiles; ++tile) {
+    bool wanted = settings.keep_exact == 0u || SAMPLE_LIGHT(uint(LIGHT_EXTENT)).z == 0.0;
+    uint tile_count = wanted ? 6u * tiles * tiles : 0u;
+    for (uint tile = 0u; tile < tile_count; ++tile) {
         uint face = tile / (tiles * tiles);
         uvec2 corner = uvec2(tile % tiles, tile / tiles % tiles);
         uvec2 place = uint(TILE) * corner + uvec2(lane % uint(TILE), lane / uint(TILE));
@@ -188,5 +191,5 @@ void main()
         float solid_angle = solid_angles[place.y * settings.size + place.x];
         sums_add(texel_of(face, middle, side, solid_angle, rays), sums);
     }
-    sums_write(sums, lane);
+    sums_write(sums, lane, wanted);
 }

@@ -24,6 +24,15 @@ pub struct Bench<'a> {
     pub run: &'a Run<'a>,
 }
 
+/// A sample that a device took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sampled {
+    /// What arrives.
+    pub light: Incident,
+    /// Whether it is a closed form, and not a cube map.
+    pub exact: bool,
+}
+
 impl Bench<'_> {
     /// A storage buffer that holds `values`; one byte at least is made for none.
     ///
@@ -71,29 +80,58 @@ impl Bench<'_> {
     /// The light of `triangles` at each point.
     ///
     /// # Errors
-    /// [`RadianceError::Value`] for a faulty triangle; [`RadianceError::Gpu`] when the device fails.
+    /// As [`sampled`](Self::sampled).
     pub fn texels(
         &self,
         texels: &Texels,
         triangles: &[Triangle],
         points: &[DVec3],
     ) -> Result<Vec<Incident>, RadianceError> {
+        Ok(self.sampled(texels, triangles, points)?.into_iter().map(|sample| sample.light).collect())
+    }
+
+    /// The same, and how it was found.
+    ///
+    /// # Errors
+    /// [`RadianceError::Value`] for a faulty triangle; [`RadianceError::Gpu`] when the device fails.
+    pub fn sampled(
+        &self,
+        texels: &Texels,
+        triangles: &[Triangle],
+        points: &[DVec3],
+    ) -> Result<Vec<Sampled>, RadianceError> {
         check(triangles)?;
+        let shape = texels.settings().shape;
+        let buffers = self.buffers(shape, triangles, points)?;
+        (self.run)(&mut |recorder| texels.record(recorder, &buffers))?;
+        let (lights, gradients) = (buffers.lights.buffer(), buffers.gradients.buffer());
+        let found = self.incidents(shape, points.len(), lights, gradients)?;
+        let records: Vec<[f32; 4]> = self.read(lights)?;
+        let exact = |i: usize| records[i * shape.stride() + shape.coefficients()][2] == 1.0;
+        let sample = |(i, light)| Sampled { light, exact: exact(i) };
+        Ok(found.into_iter().enumerate().map(sample).collect())
+    }
+
+    /// Buffers for one dispatch over all points.
+    ///
+    /// # Errors
+    /// [`RadianceError::Gpu`] when the device has no room.
+    pub fn buffers(
+        &self,
+        shape: LightShape,
+        triangles: &[Triangle],
+        points: &[DVec3],
+    ) -> Result<TexelBuffers, RadianceError> {
         let packed: Vec<EmitterTriangle> = triangles.iter().map(EmitterTriangle::from).collect();
         let positions: Vec<[f32; 4]> = points.iter().map(|p| p.extend(0.0).as_vec4().to_array()).collect();
-        let shape = texels.settings().shape;
-        let lights = self.scratch("lights", shape.light_bytes(points.len()))?;
-        let gradients = self.scratch("gradients", shape.gradient_bytes(points.len()))?;
-        let buffers = TexelBuffers {
+        Ok(TexelBuffers {
             batch: (&self.upload("batch", &[Batch::new(0, points.len() as u32)])?).into(),
             points: (&self.upload("points", &positions)?).into(),
             triangles: (&self.upload("triangles", &packed)?).into(),
             triangle_count: triangles.len() as u32,
-            lights: (&lights).into(),
-            gradients: (&gradients).into(),
-        };
-        (self.run)(&mut |recorder| texels.record(recorder, &buffers))?;
-        self.incidents(shape, points.len(), &lights, &gradients)
+            lights: (&self.scratch("lights", shape.light_bytes(points.len()))?).into(),
+            gradients: (&self.scratch("gradients", shape.gradient_bytes(points.len()))?).into(),
+        })
     }
 
     /// What so many samples hold, once kernels have written them.

@@ -27,6 +27,22 @@ static TEXELS: [[[&[u8]; 3]; 4]; 2] = [
     ],
 ];
 
+/// By gradients, order from 3 on.
+static ANALYTIC: [[&[u8]; 4]; 2] = [
+    [
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.ORDER3.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.ORDER4.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.ORDER5.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.ORDER6.spv").as_slice(),
+    ],
+    [
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.GRADIENTS.ORDER3.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.GRADIENTS.ORDER4.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.GRADIENTS.ORDER5.spv").as_slice(),
+        include_bytes!("../../../../shaders/spirv/radiance/analytic.GRADIENTS.ORDER6.spv").as_slice(),
+    ],
+];
+
 const fn storage(binding: u32) -> BindingDesc {
     BindingDesc::new(binding, BindingKind::StorageBuffer)
 }
@@ -43,15 +59,40 @@ pub struct TexelConstants {
     pub triangle_count: u32,
     /// Texels along a side of a face.
     pub size: u32,
+    /// 1: samples that are exact already are left alone.
+    pub keep_exact: u32,
+}
+
+/// Bindings of `analytic.comp`: batch, points, triangles, lights, and gradients where there are any.
+pub const ANALYTIC_BINDINGS: [BindingDesc; 5] = [storage(0), storage(1), storage(2), storage(3), storage(4)];
+
+/// The most triangles that `analytic.comp` takes.
+pub const MOST_ANALYTIC: u32 = 32;
+
+/// `Settings` of `analytic.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct AnalyticConstants {
+    /// Triangles in the buffer.
+    pub triangle_count: u32,
 }
 
 /// The kernel of a shape and number of rays.
 pub(super) fn texels(shape: LightShape, rays: u32) -> Result<Vec<u32>, RadianceError> {
-    let orders = &TEXELS[usize::from(shape.gradients)];
-    let order = shape.order.checked_sub(3).and_then(|place| orders.get(place));
-    let kernels = order.ok_or_else(|| RadianceError::setting("order", shape.order, "3 to 6 on a device"))?;
+    let kernels = of_shape(&TEXELS, shape)?;
     match rays {
         1 | 2 | 4 => Ok(words(kernels[rays.ilog2() as usize])),
         _ => Err(RadianceError::setting("rays", rays, "1, 2 or 4 along a side of a texel")),
     }
+}
+
+/// The closed forms of a shape.
+pub(super) fn analytic(shape: LightShape) -> Result<Vec<u32>, RadianceError> {
+    of_shape(&ANALYTIC, shape).map(|bytes| words(bytes))
+}
+
+fn of_shape<T>(kernels: &[[T; 4]; 2], shape: LightShape) -> Result<&T, RadianceError> {
+    let orders = &kernels[usize::from(shape.gradients)];
+    let found = shape.order.checked_sub(3).and_then(|place| orders.get(place));
+    found.ok_or_else(|| RadianceError::setting("order", shape.order, "3 to 6 on a device"))
 }

@@ -46,8 +46,8 @@ impl From<&Triangle> for EmitterTriangle {
 
 /// How large a sample's light is in memory.
 ///
-/// `lights`: [`stride`](Self::stride) vec4 a sample, coefficients first (RGB, 0), then (solid angle, nearness, 0, 0), then
-/// (slope RGB, 0). `gradients`, if there: [`gradient_stride`](Self::gradient_stride) vec4 a sample, d/dx, d/dy and d/dz of
+/// `lights`: [`stride`](Self::stride) vec4 a sample, coefficients first (RGB, 0), then (solid angle, nearness, 1 where they
+/// are closed forms, 0), then (slope RGB, 0). `gradients`, if there: [`gradient_stride`](Self::gradient_stride) vec4 a sample, d/dx, d/dy and d/dz of
 /// the first coefficient (RGB, 0), then of the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LightShape {

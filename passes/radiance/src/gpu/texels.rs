@@ -5,11 +5,13 @@ use airglow_gpu::{
     Binding, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context, GpuError, Label, Location,
     Recorder, Requirements,
 };
-use airglow_graph::BufferDesc;
+use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::cube::SolidAngles;
 
 use super::LightShape;
-use super::kernels::{self, TEXEL_BINDINGS, TexelConstants};
+use super::kernels::{
+    self, ANALYTIC_BINDINGS, AnalyticConstants, MOST_ANALYTIC, TEXEL_BINDINGS, TexelConstants,
+};
 use crate::RadianceError;
 
 /// How finely samples see.
@@ -45,6 +47,8 @@ pub struct TexelBuffers {
 pub struct Texels {
     settings: TexelSettings,
     pipeline: ComputePipeline,
+    /// Closed forms that go first, where there are few triangles.
+    analytic: Option<ComputePipeline>,
     solid_angles: Buffer,
 }
 
@@ -71,7 +75,23 @@ impl Texels {
             push_constant_size: size_of::<TexelConstants>() as u32,
         })?;
         let solid_angles = solid_angles(context, size as usize)?;
-        Ok(Self { settings, pipeline, solid_angles })
+        Ok(Self { settings, pipeline, analytic: None, solid_angles })
+    }
+
+    /// The same, that samples up to [`MOST_ANALYTIC`] triangles in closed form from where none that emits overlaps
+    /// another: the device decides for each sample, whose record says so, and only the others are cube maps.
+    ///
+    /// # Errors
+    /// [`RadianceError::Gpu`] when the device refuses.
+    pub fn with_closed_forms(mut self, context: &Context) -> Result<Self, RadianceError> {
+        let shape = self.settings.shape;
+        self.analytic = Some(context.create_compute_pipeline(&ComputePipelineDesc {
+            name: "radiance closed forms",
+            spirv: &kernels::analytic(shape)?,
+            bindings: &ANALYTIC_BINDINGS[..4 + usize::from(shape.gradients)],
+            push_constant_size: size_of::<AnalyticConstants>() as u32,
+        })?);
+        Ok(self)
     }
 
     /// The settings it was made for.
@@ -80,12 +100,22 @@ impl Texels {
         &self.settings
     }
 
-    /// Records one dispatch, as large as the batch says, without barriers: what its buffers hold must be visible to
+    /// Records dispatches as large as the batch says, without barriers around them: what the buffers hold must be visible to
     /// compute shaders, and the batch to indirect commands.
     ///
     /// # Errors
     /// [`GpuError::Misuse`] for buffers that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, buffers: &TexelBuffers) -> Result<(), GpuError> {
+        let triangle_count = buffers.triangle_count;
+        let analytic = self.analytic.as_ref().filter(|_| triangle_count <= MOST_ANALYTIC);
+        if let Some(pipeline) = analytic {
+            let slices =
+                [&buffers.batch, &buffers.points, &buffers.triangles, &buffers.lights, &buffers.gradients];
+            self.bind(recorder, pipeline, &slices)?;
+            recorder.push_constants(&AnalyticConstants { triangle_count })?;
+            recorder.dispatch_indirect(buffers.batch.clone())?;
+            recorder.memory_barrier(Access::ComputeStorageWrite, Access::ComputeStorageReadWrite)?;
+        }
         let slices = [
             &buffers.batch,
             &buffers.points,
@@ -94,13 +124,25 @@ impl Texels {
             &buffers.lights,
             &buffers.gradients,
         ];
-        let bound = [0, 1, 2, 3, 4, 5].map(|i| Binding::storage(i as u32, slices[i].clone()));
-        recorder.bind_compute(&self.pipeline, &bound[..5 + usize::from(self.settings.shape.gradients)])?;
+        self.bind(recorder, &self.pipeline, &slices)?;
         recorder.push_constants(&TexelConstants {
-            triangle_count: buffers.triangle_count,
+            triangle_count,
             size: self.settings.size,
+            keep_exact: analytic.is_some().into(),
         })?;
         recorder.dispatch_indirect(buffers.batch.clone())
+    }
+
+    /// Binds slices in order, without the last, gradients, where the shape has none.
+    fn bind<const N: usize>(
+        &self,
+        recorder: &mut Recorder<'_>,
+        pipeline: &ComputePipeline,
+        slices: &[&BufferSlice; N],
+    ) -> Result<(), GpuError> {
+        let bound: [Binding; N] = std::array::from_fn(|i| Binding::storage(i as u32, slices[i].clone()));
+        let count = N - usize::from(!self.settings.shape.gradients);
+        recorder.bind_compute(pipeline, &bound[..count])
     }
 }
 

@@ -1,0 +1,75 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Incident radiance of few triangles in closed form, at samples from which none of those that emit overlaps another: a
+// workgroup a sample. The record of a sample says in its third number whether it is one (1) or is left to a cube map (0).
+//
+// ORDER      3-6
+// GRADIENTS  1: derivatives by the sample's position, too
+
+#include "radiance/face.glsl"
+#include "radiance/sample.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, set = 0, binding = 0) readonly buffer Samples { Batch batch; };
+layout(std430, set = 0, binding = 1) readonly buffer Points { vec4 points[]; };
+layout(std430, set = 0, binding = 2) readonly buffer Triangles { Triangle triangles[]; };
+layout(std430, set = 0, binding = 3) buffer Lights { vec4 lights[]; };
+#if GRADIENTS
+layout(std430, set = 0, binding = 4) buffer Gradients { vec4 gradients[]; };
+#endif
+
+layout(push_constant) uniform Settings {
+    uint triangle_count; // MOST_TRIANGLES or fewer
+} settings;
+
+#define SAMPLE_LIGHT(i) lights[(batch.first + gl_WorkGroupID.x) * uint(LIGHT_STRIDE) + (i)]
+#define SAMPLE_GRADIENT(i) gradients[(batch.first + gl_WorkGroupID.x) * uint(GRADIENT_STRIDE) + (i)]
+
+#include "radiance/sums.glsl"
+#include "radiance/polygon.glsl"
+
+#define MOST_TRIANGLES 32
+
+// Unit corners, and in the first one's fourth component whether the triangle emits.
+shared vec4 unit[3 * MOST_TRIANGLES];
+shared uint overlaps;
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex;
+    vec3 point = points[batch.first + gl_WorkGroupID.x].xyz;
+    uint count = min(settings.triangle_count, uint(MOST_TRIANGLES));
+    vec3 corners[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
+    vec3 radiance = vec3(0.0);
+    if (lane < count) {
+        vec4 a = triangles[lane].corners[0];
+        vec4 b = triangles[lane].corners[1];
+        vec4 c = triangles[lane].corners[2];
+        corners = vec3[3](a.xyz - point, b.xyz - point, c.xyz - point);
+        radiance = vec3(a.w, b.w, c.w);
+        float emits = max(a.w, max(b.w, c.w)) > 0.0 ? 1.0 : 0.0;
+        for (uint k = 0u; k < 3u; ++k) {
+            unit[3u * lane + k] = vec4(corners[k] * inversesqrt(max(dot(corners[k], corners[k]), 1e-37)), emits);
+        }
+    }
+    if (lane == 0u) { overlaps = 0u; }
+    barrier();
+    for (uint pair = lane; pair < count * count; pair += uint(LANES)) {
+        uint i = pair / count;
+        uint j = pair % count;
+        if (i < j && unit[3u * i].w + unit[3u * j].w > 0.0) {
+            vec3 one[3] = vec3[3](unit[3u * i].xyz, unit[3u * i + 1u].xyz, unit[3u * i + 2u].xyz);
+            vec3 other[3] = vec3[3](unit[3u * j].xyz, unit[3u * j + 1u].xyz, unit[3u * j + 2u].xyz);
+            if (triangles_overlap(one, other)) { atomicOr(overlaps, 1u); }
+        }
+    }
+    barrier();
+    bool exact = overlaps == 0u;
+    vec4 sums[ELEMENTS];
+    if (!exact) { radiance = vec3(0.0); }
+    polygon_sums(corners[0], corners[1], corners[2], radiance, sums);
+    if (lane == 0u && exact) { sums[LIGHT_EXTENT].z = 1.0; }
+    sums_write(sums, lane, true);
+}
