@@ -57,7 +57,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, rule) in [("taps, default", taps::DEFAULT), ("taps, reference", taps::REFERENCE)] {
         report(name, &|c| {
             let segment = c.segment();
-            transmittance(c.extinction, segment.path) * taps::kernel(segment, c.extinction, rule, |_| 1.0)
+            transmittance(c.extinction, segment.path)
+                * taps::kernel(segment, c.extinction, rule, 0.0, |_| 1.0)
         });
     }
     for size in [16, 64, 256] {

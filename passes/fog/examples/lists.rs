@@ -26,7 +26,7 @@ fn view(lights: Vec<Light>) -> View {
         forward: DVec3::NEG_Z,
         edges: [-0.6, 0.6, -0.6, 0.6],
     };
-    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights }
+    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights, environment: None }
 }
 
 /// Lamps along both sides of a street, ranges from 2 to 16 m.

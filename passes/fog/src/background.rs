@@ -152,7 +152,18 @@ struct GatherConstants {
     size: [u32; 2],
     target: [u32; 2],
     levels: u32,
-    padding: [u32; 3],
+    straight: f32,
+    padding: [u32; 2],
+}
+
+/// What of an environment in fog a map holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// All that is seen: what arrives straight, and the glow.
+    Whole,
+    /// The glow alone, smooth but for its peaks: for a host that has a smaller map of it, and adds exp(-T) of the
+    /// environment itself at full resolution.
+    Glow,
 }
 
 impl Background {
@@ -204,6 +215,7 @@ impl Background {
         environment: &ImageView,
         target: &ImageView,
         distant: &Distant,
+        seen: Seen,
     ) -> Result<(), FogError> {
         distant.check()?;
         let bound = [Binding::sampled(0, environment.clone()), Binding::storage(1, &self.parts)];
@@ -218,7 +230,7 @@ impl Background {
             first += parts(self.size, level) as u32;
         }
         recorder.memory_barrier(Access::ComputeStorageWrite, Access::FragmentStorageRead)?;
-        self.gather(recorder, &bound, target, distant).map_err(FogError::Gpu)
+        self.gather(recorder, &bound, target, distant, seen).map_err(FogError::Gpu)
     }
 
     fn gather(
@@ -227,6 +239,7 @@ impl Background {
         bound: &[Binding],
         target: &ImageView,
         distant: &Distant,
+        seen: Seen,
     ) -> Result<(), GpuError> {
         let [red, green, blue] = distant.optical_distance;
         let grey = f32::from(u8::from(red == green && green == blue));
@@ -239,7 +252,8 @@ impl Background {
             size: self.size,
             target: extent,
             levels: levels(self.size),
-            padding: [0; 3],
+            straight: f32::from(u8::from(seen == Seen::Whole)),
+            padding: [0; 2],
         };
         let colors = [ColorAttachment { view: target, load: Load::Discard }];
         recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;

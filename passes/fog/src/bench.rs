@@ -77,7 +77,13 @@ impl Ray {
             forward: DVec3::NEG_Z,
             edges: [-1.0, 1.0, -1.0, 1.0],
         };
-        let view = View { world: World::default(), camera, medium: self.medium, lights: vec![self.light] };
+        let view = View {
+            world: World::default(),
+            camera,
+            medium: self.medium,
+            lights: vec![self.light],
+            environment: None,
+        };
         let packed = pack(settings, &view, [1, 1])?.constants;
         let distance = self.distance.min(f64::from(kernels::FARTHEST));
         Ok(RowConstants {

@@ -1,11 +1,13 @@
-//! The pass: its pipeline, kept from frame to frame.
+//! The pass: its pipelines, kept from frame to frame.
+
+use std::slice::from_ref;
 
 use airglow_gpu::Binding;
 use airglow_gpu::ash::vk;
 use airglow_gpu::requirements::FormatNeed;
 use airglow_gpu::{
     Blend, ColorAttachment, Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, ImageView, Load,
-    Recorder, Rendering, Requirements,
+    Recorder, Rendering, Requirements, VertexAttribute, VertexBufferLayout,
 };
 use airglow_graph::{Access, LeftOut};
 
@@ -14,6 +16,7 @@ use crate::control::Control;
 use crate::frame::Frame;
 use crate::kernels;
 use crate::settings::Settings;
+use crate::tiles::{KINDS, Kind, TileConstants};
 
 /// What the pass does with the images of a frame, in the order of [`Bindings`]: for a host with a frame graph of its own.
 pub const ACCESSES: [(&str, Access); 3] = [
@@ -37,7 +40,7 @@ pub struct Bindings {
 #[derive(Clone)]
 pub struct Fog {
     settings: Settings,
-    pipeline: GraphicsPipeline,
+    pipelines: [GraphicsPipeline; KINDS.len()],
 }
 
 /// A frame as the road without a graph records it.
@@ -54,7 +57,7 @@ pub enum Prepared {
 pub struct Pass {
     /// Changes the view before it is recorded again.
     pub control: Control,
-    pipeline: GraphicsPipeline,
+    pipelines: [GraphicsPipeline; KINDS.len()],
 }
 
 impl Fog {
@@ -70,27 +73,39 @@ impl Fog {
         requirements
     }
 
-    /// Makes the kernel that `settings` need on a device.
+    /// Makes the kernels that `settings` need on a device.
     ///
     /// # Errors
     /// [`FogError::Range`] for settings out of range, [`FogError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: Settings) -> Result<Self, FogError> {
         settings.check()?;
-        let pipeline = context.create_graphics_pipeline(&GraphicsPipelineDesc {
-            name: "fog airlight",
-            vertex: &kernels::rectangle(),
-            fragment: Some(&kernels::airlight(&settings)),
-            bindings: &kernels::BINDINGS,
-            push_constant_size: 0,
-            vertex_buffers: &[],
-            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-            cull: vk::CullModeFlags::NONE,
-            front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-            depth: None,
-            colors: &[settings.format],
-            blend: Blend::None,
-        })?;
-        Ok(Self { settings, pipeline })
+        let tiles = VertexBufferLayout {
+            stride: size_of::<TileConstants>() as u32,
+            rate: vk::VertexInputRate::INSTANCE,
+            attributes: &[VertexAttribute { location: 0, format: vk::Format::R32G32B32A32_UINT, offset: 0 }],
+        };
+        let pipeline = |name, kind| {
+            context.create_graphics_pipeline(&GraphicsPipelineDesc {
+                name,
+                vertex: &kernels::tile(kind),
+                fragment: Some(&kernels::airlight(&settings, kind)),
+                bindings: &kernels::BINDINGS,
+                push_constant_size: 0,
+                vertex_buffers: &[tiles],
+                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                cull: vk::CullModeFlags::NONE,
+                front_face: vk::FrontFace::COUNTER_CLOCKWISE,
+                depth: None,
+                colors: &[settings.format],
+                blend: Blend::None,
+            })
+        };
+        let pipelines = [
+            pipeline("fog airlight, no light", Kind::Dark)?,
+            pipeline("fog airlight, points", Kind::Points)?,
+            pipeline("fog airlight, all lights", Kind::All)?,
+        ];
+        Ok(Self { settings, pipelines })
     }
 
     /// The settings it was made for.
@@ -115,7 +130,7 @@ impl Fog {
                 would_return: "a medium with extinction".to_owned(),
             }));
         }
-        Ok(Prepared::Pass(Pass { control, pipeline: self.pipeline.clone() }))
+        Ok(Prepared::Pass(Pass { control, pipelines: self.pipelines.clone() }))
     }
 }
 
@@ -125,7 +140,9 @@ impl Pass {
     /// # Errors
     /// [`GpuError::Misuse`] for views that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, bindings: &Bindings) -> Result<(), GpuError> {
-        let frame = recorder.upload(&[self.control.constants()])?;
+        let state = self.control.lock();
+        let frame = recorder.upload(from_ref(&state.constants))?;
+        let tiles = recorder.upload(state.tiles.rows())?;
         let colors = [ColorAttachment { view: &bindings.target, load: Load::Discard }];
         recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
         let bound = [
@@ -133,8 +150,14 @@ impl Pass {
             Binding::sampled(1, bindings.surface.clone()),
             Binding::sampled(2, bindings.depth.clone()),
         ];
-        recorder.bind_graphics(&self.pipeline, &bound)?;
-        recorder.draw(0..3, 0..1)?;
+        recorder.bind_vertex_buffer(0, &tiles)?;
+        for (pipeline, kind) in self.pipelines.iter().zip(KINDS) {
+            let rows = state.tiles.of(kind);
+            if !rows.is_empty() {
+                recorder.bind_graphics(pipeline, &bound)?;
+                recorder.draw(0..6, rows)?;
+            }
+        }
         recorder.end_rendering()
     }
 }

@@ -3,7 +3,7 @@
 use airglow_math::World;
 
 use crate::control::Control;
-use crate::{Camera, Light, Medium};
+use crate::{Camera, Environment, Light, Medium};
 
 /// The view through a medium: everything that may change while a plan stays.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +16,9 @@ pub struct View {
     pub medium: Medium,
     /// Lights inside the medium, at most [`MAX_LIGHTS`](crate::MAX_LIGHTS).
     pub lights: Vec<Light>,
+    /// What lies behind the scene, lit from afar; `None`: darkness. Some needs
+    /// [`Settings::environment`](crate::Settings::environment).
+    pub environment: Option<Environment>,
 }
 
 /// A frame. Images are named by graph handles on the graph's road, by `()` on the road without one.
@@ -53,4 +56,8 @@ pub struct Counts {
     pub evaluated: u32,
     /// Those left out: dark, too weak, or out of reach of every pixel.
     pub left_out: u32,
+    /// Pairs of a tile, [`TILE`](crate::TILE) pixels on a side, and a light that is evaluated in it.
+    pub pairs: u32,
+    /// Pairs left out: with those evaluated, as many as there are tiles times lights.
+    pub pairs_left_out: u32,
 }

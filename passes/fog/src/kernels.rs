@@ -5,6 +5,7 @@ use airglow_gpu::{BindingDesc, BindingKind};
 use crate::FogError;
 use crate::medium::PhaseKind;
 use crate::settings::{Preset, Settings};
+use crate::tiles::Kind;
 
 macro_rules! phases {
     ($before:literal) => {
@@ -18,10 +19,42 @@ macro_rules! phases {
     };
 }
 
-/// By height, preset, phase function.
-static AIRLIGHT: [[[&[u8]; 4]; 2]; 2] = [
-    [phases!("airlight.FOG_TAPS6"), phases!("airlight.FOG_TAPS16")],
-    [phases!("airlight.FOG_HEIGHT.FOG_TAPS6"), phases!("airlight.FOG_HEIGHT.FOG_TAPS16")],
+/// By height, whether all lights are points, preset, phase function.
+static AIRLIGHT: [[[[&[u8]; 4]; 2]; 2]; 2] = [
+    [
+        [phases!("airlight.FOG_TAPS6"), phases!("airlight.FOG_TAPS16")],
+        [phases!("airlight.FOG_POINTS.FOG_TAPS6"), phases!("airlight.FOG_POINTS.FOG_TAPS16")],
+    ],
+    [
+        [phases!("airlight.FOG_HEIGHT.FOG_TAPS6"), phases!("airlight.FOG_HEIGHT.FOG_TAPS16")],
+        [
+            phases!("airlight.FOG_HEIGHT.FOG_POINTS.FOG_TAPS6"),
+            phases!("airlight.FOG_HEIGHT.FOG_POINTS.FOG_TAPS16"),
+        ],
+    ],
+];
+/// By whether all lights are points, preset, phase function.
+static AIRLIGHT_ENVIRONMENT: [[[&[u8]; 4]; 2]; 2] = [
+    [phases!("airlight_environment.FOG_TAPS6"), phases!("airlight_environment.FOG_TAPS16")],
+    [
+        phases!("airlight_environment.FOG_POINTS.FOG_TAPS6"),
+        phases!("airlight_environment.FOG_POINTS.FOG_TAPS16"),
+    ],
+];
+/// By height.
+static DARK: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/airlight_dark.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/airlight_dark.FOG_HEIGHT.spv").as_slice(),
+];
+/// By preset.
+static DARK_ENVIRONMENT: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/airlight_dark_environment.FOG_TAPS6.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/airlight_dark_environment.FOG_TAPS16.spv").as_slice(),
+];
+/// By whether it has a light.
+static TILE: [&[u8]; 2] = [
+    include_bytes!("../../../shaders/spirv/fog/tile.FOG_DARK.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/fog/tile.spv").as_slice(),
 ];
 /// By preset, phase function.
 static ROWS: [[&[u8]; 4]; 2] = [phases!("airlight_rows.FOG_TAPS6"), phases!("airlight_rows.FOG_TAPS16")];
@@ -56,9 +89,21 @@ pub const BINDINGS: [BindingDesc; 3] = [
     BindingDesc::new(2, BindingKind::SampledImage),
 ];
 
-/// The fragment stage of the airlight pass.
-pub(crate) fn airlight(settings: &Settings) -> Vec<u32> {
-    words(AIRLIGHT[usize::from(settings.height)][settings.preset as usize][settings.phase as usize])
+/// The fragment stage of the airlight pass for tiles of a kind.
+pub(crate) fn airlight(settings: &Settings, kind: Kind) -> Vec<u32> {
+    let (height, preset) = (usize::from(settings.height), settings.preset as usize);
+    let points = usize::from(kind == Kind::Points);
+    words(match (kind, settings.environment) {
+        (Kind::Dark, false) => DARK[height],
+        (Kind::Dark, true) => DARK_ENVIRONMENT[preset],
+        (_, false) => AIRLIGHT[height][points][preset][settings.phase as usize],
+        (_, true) => AIRLIGHT_ENVIRONMENT[points][preset][settings.phase as usize],
+    })
+}
+
+/// Its vertex stage.
+pub(crate) fn tile(kind: Kind) -> Vec<u32> {
+    words(TILE[usize::from(kind != Kind::Dark)])
 }
 
 /// What `airlight.frag` takes for no surface, metres: above the 1e30 of the functions.

@@ -28,7 +28,7 @@
 //! };
 //! let lamp = Light { radius: 0.1, ..Light::point(DVec3::new(0.0, 4.0, 0.0), [40.0, 30.0, 15.0]) };
 //! let medium = Medium::with_visibility(60.0);
-//! let view = View { world: World::default(), camera, medium, lights: vec![lamp] };
+//! let view = View { world: World::default(), camera, medium, lights: vec![lamp], environment: None };
 //! let fogged = fog.add(graph, &Frame { size: [1280, 720], surface, depth, target: None, view })?;
 //! // … the tone map reads fogged.colour …
 //! # Ok(())
@@ -37,10 +37,12 @@
 #![forbid(unsafe_code)]
 
 mod background;
+mod beam;
 pub mod bench;
 mod camera;
 mod control;
 mod declare;
+mod environment;
 mod error;
 pub mod eval;
 pub mod evaluator;
@@ -56,11 +58,13 @@ pub mod reference;
 pub mod rivals;
 mod settings;
 pub mod stability;
+mod tiles;
 
-pub use background::{BACKGROUND_BINDINGS, Background, Distant};
+pub use background::{BACKGROUND_BINDINGS, Background, Distant, Seen};
 pub use bench::Bench;
 pub use camera::Camera;
 pub use control::Control;
+pub use environment::{ENVIRONMENT_ORDER, Environment};
 pub use error::FogError;
 pub use fog::{ACCESSES, Bindings, Fog, Pass, Prepared};
 pub use frame::{Counts, Fogged, Frame, View};
@@ -70,3 +74,4 @@ pub use lobes::{LOBE_BINDINGS, Lobe, LobeTables, MAX_EXPONENT};
 pub use medium::{MAX_G, Medium, Phase, PhaseKind, Thinning, VISIBILITY_CONTRAST};
 pub use pack::{FrameConstants, LightConstants};
 pub use settings::{MAX_LIGHTS, Preset, Settings};
+pub use tiles::TILE;

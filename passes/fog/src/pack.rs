@@ -1,17 +1,20 @@
 //! From the host's view to the bytes of `frame.glsl`.
 
-use std::f64::consts::PI;
+mod light;
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::beam::{Beam, Region};
 use crate::camera::Rays;
+use crate::environment::ENVIRONMENT_ORDER;
 use crate::error::FogError;
-use crate::frame::{Counts, View};
-use crate::light::Light;
+use crate::frame::View;
 use crate::medium::Thinning;
-use crate::reach::{Reach, reach};
 use crate::settings::{MAX_LIGHTS, Settings};
+use crate::tiles::{Regions, TILE};
+
+const COEFFICIENTS: usize = ENVIRONMENT_ORDER * ENVIRONMENT_ORDER;
 
 /// `FogLight` of `airlight.glsl`.
 #[repr(C)]
@@ -25,7 +28,7 @@ pub struct LightConstants {
     pub(crate) high: [f32; 4],
 }
 
-/// `Frame` of `frame.glsl`.
+/// `FogFrame` of `frame.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct FrameConstants {
@@ -38,6 +41,9 @@ pub struct FrameConstants {
     size: [u32; 2],
     light_count: i32,
     farthest: f32,
+    /// Coefficients of the environment's radiance, times the albedo and what is left of it; the first three hold its
+    /// optical distance beside them.
+    environment: [[f32; 4]; COEFFICIENTS],
     lights: [LightConstants; MAX_LIGHTS],
 }
 
@@ -63,12 +69,15 @@ impl FrameConstants {
 #[derive(Clone, Debug)]
 pub(crate) struct Packed {
     pub constants: FrameConstants,
-    pub counts: Counts,
+    /// Lights of the view, and where those of the constants may be seen.
+    pub lights: u32,
+    pub rays: Rays,
+    pub regions: Regions,
 }
 
 /// Checks a view and packs it for a picture of `size` pixels. Subtraction of the eye's place is done in f64.
 pub(crate) fn pack(settings: &Settings, view: &View, size: [u32; 2]) -> Result<Packed, FogError> {
-    let View { world, camera, medium, lights } = view;
+    let View { world, camera, medium, lights, environment: _ } = view;
     world.check()?;
     camera.check()?;
     medium.check()?;
@@ -84,6 +93,7 @@ pub(crate) fn pack(settings: &Settings, view: &View, size: [u32; 2]) -> Result<P
     if medium.thinning.is_some() && !settings.height {
         return Err(kernel("thins with height", "choose Settings::height"));
     }
+    let environment = pack_environment(settings, view)?;
     let eye = world.position(camera.position);
     let [thinning, density] = match medium.thinning {
         Some(Thinning { level, scale_height }) => {
@@ -93,116 +103,59 @@ pub(crate) fn pack(settings: &Settings, view: &View, size: [u32; 2]) -> Result<P
     };
     let extinction = medium.extinction.map(|value| value * density);
     let scattering = medium.scattering().map(|value| value * density);
-    let mut packed = [LightConstants::zeroed(); MAX_LIGHTS];
-    let mut counts = Counts::default();
     let rays = camera.rays(world, size);
+    let whole = Beam::new(&rays, world.depth.orthographic, [0.0; 2], [1.0; 2]);
+    let mut packed = [LightConstants::zeroed(); MAX_LIGHTS];
+    let mut regions = Regions { regions: [Region::default(); MAX_LIGHTS], count: 0, featured: 0 };
     for light in lights {
-        let light = pack_light(settings, view, light, &rays, [least(medium.extinction), most(scattering)]);
-        match light {
-            Some(light) => {
-                packed[counts.evaluated as usize] = light;
-                counts.evaluated += 1;
-            }
-            None => counts.left_out += 1,
+        let strongest = [least(medium.extinction), most(scattering)];
+        let Some((constants, region)) = light::pack(settings, view, light, strongest) else { continue };
+        if whole.meets(&region) {
+            let featured = light.cone.is_some() || light.range.is_some() || light.bounds.is_some();
+            packed[regions.count] = constants;
+            regions.regions[regions.count] = region;
+            regions.featured |= u64::from(featured) << regions.count;
+            regions.count += 1;
         }
     }
+    let [start, to_right, to_lower] = rays.start;
     let constants = FrameConstants {
-        start: rays.start.map(|vector| wide(vector, f64::from(u8::from(world.depth.orthographic)))),
+        start: [
+            wide(start, f64::from(u8::from(world.depth.orthographic))),
+            wide(to_right, f64::from(TILE)),
+            wide(to_lower, 0.0),
+        ],
         direction: rays.direction.map(|vector| wide(vector, 0.0)),
         depth: world.depth_coefficients().map(|value| value as f32),
         extinction: rgb(extinction, thinning),
         scattering: rgb(scattering, world.pre_exposure),
         phase,
         size,
-        light_count: counts.evaluated as i32,
+        light_count: regions.count as i32,
         farthest: world.depth.farthest() as f32,
+        environment,
         lights: packed,
     };
-    Ok(Packed { constants, counts })
+    Ok(Packed { constants, lights: lights.len() as u32, rays, regions })
 }
 
-/// The constants of a light, or `None` where no pixel can show its airlight.
-fn pack_light(
-    settings: &Settings,
-    view: &View,
-    light: &Light,
-    rays: &Rays,
-    [extinction, scattering]: [f64; 2],
-) -> Option<LightConstants> {
-    let View { world, camera, medium, .. } = view;
-    let position = world.position(light.position) - world.position(camera.position);
-    let distance = position.length();
-    let intensity = light.intensity.map(|value| value * light.scatter);
-    // Where the medium thins, neither its density nor what the path loses is bounded by that of the eye.
-    let reached = if medium.thinning.is_some() {
-        if most(intensity) > 0.0 { Reach::Everywhere } else { Reach::Nowhere }
-    } else {
-        let strongest = scattering * medium.phase.most() * most(intensity) * (-extinction * distance).exp();
-        reach(strongest, distance, world.distance(light.radius), settings.bound / world.pre_exposure)
-    };
-    // The sphere of a range is seen within the angle whose sine is range / distance.
-    let range = light
-        .range
-        .map(|range| world.distance(range) / distance)
-        .filter(|sine| settings.bound > 0.0 && *sine < 1.0);
-    let angle = match reached {
-        Reach::Nowhere => return None,
-        Reach::Within(angle) => range.map_or(angle, |sine| angle.min(sine.asin())),
-        Reach::Everywhere => range.map_or(PI, f64::asin),
-    };
-    let least_along = if angle == PI || world.depth.orthographic {
-        f64::from(f32::MIN)
-    } else if rays.come_within(position, angle) {
-        // Rounded outwards by more than f32 loses.
-        distance * angle.cos() - 1e-6 * distance
-    } else {
-        return None;
-    };
-    let mut constants = LightConstants {
-        position_radius: wide(position, world.distance(light.radius)),
-        intensity_reach: rgb(seen(view, intensity, position, world.distance(light.radius)), least_along),
-        axis_cosine: [0.0, 0.0, 0.0, -2.0],
-        falloff_range: [0.0; 4],
-        low: [0.0; 4],
-        high: [0.0; 4],
-    };
-    if let Some(cone) = light.cone {
-        constants.axis_cosine = wide(world.direction(cone.direction).normalize(), cone.outer.cos());
-        // KHR_lights_punctual: full at the inner angle, nothing at the outer.
-        let scale = 1.0 / (cone.inner.cos() - cone.outer.cos()).max(1e-3);
-        constants.falloff_range[..2].copy_from_slice(&[scale as f32, (-cone.outer.cos() * scale) as f32]);
+/// What is left of the environment's light, or nothing where there is none.
+fn pack_environment(settings: &Settings, view: &View) -> Result<[[f32; 4]; COEFFICIENTS], FogError> {
+    let Some(environment) = &view.environment else { return Ok([[0.0; 4]; COEFFICIENTS]) };
+    if !settings.environment {
+        let (what, mend) = ("lies before an environment", "choose Settings::environment");
+        return Err(FogError::Kernel { what, mend });
     }
-    if let Some(range) = light.range {
-        constants.falloff_range[2] = world.distance(range) as f32;
+    let metres = view.world.distance(environment.distance);
+    let distant = environment.distant(&view.medium, metres)?;
+    let [red, green, blue] = distant.optical_distance;
+    let optical = [red, green, blue].into_iter().chain(std::iter::repeat(0.0));
+    let left = DVec3::from(distant.albedo) * DVec3::new((-red).exp(), (-green).exp(), (-blue).exp());
+    let mut packed = [[0.0; 4]; COEFFICIENTS];
+    for ((packed, radiance), optical) in packed.iter_mut().zip(environment.radiance).zip(optical) {
+        *packed = wide(left * DVec3::from(radiance), optical);
     }
-    if let Some(bounds) = light.bounds {
-        let ends = [bounds.low, bounds.high].map(|end| world.position(end) - world.position(camera.position));
-        constants.falloff_range[3] = 1.0;
-        constants.low = wide(ends[0].min(ends[1]), 0.0);
-        constants.high = wide(ends[0].max(ends[1]), 0.0);
-    }
-    Some(constants)
-}
-
-/// `fog_seen` of `airlight.glsl`, in f64; left to the shader where each ray has an eye of its own.
-fn seen(view: &View, intensity: [f64; 3], position: DVec3, radius: f64) -> [f64; 3] {
-    if view.world.depth.orthographic || view.medium.thinning.is_some() {
-        return intensity;
-    }
-    let path = position.length().hypot(radius);
-    [0, 1, 2].map(|channel| intensity[channel] * (-view.medium.extinction[channel] * path).exp())
-}
-
-impl Rays {
-    /// Whether a ray of the picture may come within `angle` of the direction to `position`: none outside the cone about
-    /// the picture's middle that holds its corners does if the two cones are apart. Rays of a perspective.
-    fn come_within(&self, position: DVec3, angle: f64) -> bool {
-        let [corner, across, down] = self.direction;
-        let middle = (corner + 0.5 * (across + down)).normalize();
-        let corners = [corner, corner + across, corner + down, corner + across + down];
-        let widest = corners.map(|corner| middle.angle_between(corner)).into_iter().fold(0.0, f64::max);
-        middle.angle_between(position) <= widest + angle
-    }
+    Ok(packed)
 }
 
 fn most(values: [f64; 3]) -> f64 {

@@ -9,6 +9,8 @@ pub(crate) enum Reach {
     Nowhere,
     /// Below the bound at larger angles, radians, from the direction to the light.
     Within(f64),
+    /// Below the bound at larger distances from the light, metres, where rays are parallel.
+    Near(f64),
     /// Not bounded.
     Everywhere,
 }
@@ -35,6 +37,15 @@ pub(crate) fn reach(most: f64, distance: f64, radius: f64, bound: f64) -> Reach 
     Reach::Within(outside)
 }
 
+/// The same for parallel rays, whose eyes may be anywhere: at a distance h off the light the airlight is at most `most`
+/// times pi / h, `most` holding what is left after the least distance of the light from the plane of the eyes.
+pub(crate) fn reach_of_parallel(most: f64, radius: f64, bound: f64) -> Reach {
+    if most <= 0.0 || (radius > 0.0 && most * PI / radius < bound) {
+        return Reach::Nowhere;
+    }
+    if bound > 0.0 { Reach::Near(most * PI / bound) } else { Reach::Everywhere }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +63,14 @@ mod tests {
         assert_eq!(reach(0.0, 10.0, 0.0, 0.1), Reach::Nowhere);
         assert_eq!(reach(1.0, 10.0, 100.0, 0.1), Reach::Nowhere);
         assert_eq!(reach(1.0, 0.0, 0.0, 0.1), Reach::Everywhere);
+    }
+
+    #[test]
+    fn parallel_rays_see_a_light_as_far_off_as_the_bound_says() {
+        let Reach::Near(radius) = reach_of_parallel(2.0, 0.0, 0.1) else { panic!("a bound") };
+        assert!((2.0 * PI / radius / 0.1 - 1.0).abs() < 1e-12, "{radius}");
+        assert_eq!(reach_of_parallel(2.0, 0.0, 0.0), Reach::Everywhere);
+        assert_eq!(reach_of_parallel(0.0, 0.0, 0.1), Reach::Nowhere);
+        assert_eq!(reach_of_parallel(2.0, 100.0, 0.1), Reach::Nowhere);
     }
 }

@@ -31,6 +31,9 @@ pub struct Settings {
     pub phase: PhaseKind,
     /// Whether a medium may thin with height. Default no: then its arithmetic does not exist.
     pub height: bool,
+    /// Whether there is an environment behind the medium. Default no: then its arithmetic does not exist. Not with
+    /// [`height`](Self::height).
+    pub environment: bool,
     /// Radiance, W/sr/m2, below which the airlight of one light is left out of a pixel. 0 leaves nothing out. Default
     /// 1e-4: half an 8-bit step of the darkest pixels at an exposure of 1.
     pub bound: f64,
@@ -43,6 +46,7 @@ impl Default for Settings {
             preset: Preset::Default,
             phase: PhaseKind::HenyeyGreenstein,
             height: false,
+            environment: false,
             bound: 1e-4,
         }
     }
@@ -52,8 +56,12 @@ impl Settings {
     /// Refuses what is out of range.
     ///
     /// # Errors
-    /// [`FogError::Range`] with the field.
+    /// [`FogError::Range`] with the field, [`FogError::Kernel`] for what does not go together.
     pub fn check(&self) -> Result<(), FogError> {
+        if self.environment && self.height {
+            let (what, mend) = ("thins with height", "choose Settings::height or Settings::environment");
+            return Err(FogError::Kernel { what, mend });
+        }
         let bound = self.bound;
         check(|| "bound".to_owned(), bound, bound >= 0.0 && bound.is_finite(), "a radiance from 0 on")
     }

@@ -1,17 +1,26 @@
-//! Environments through fog: the picture against quadrature over the map, its energy and the band factors.
+//! Environments through fog: the picture against quadrature over the map, its energy and the band factors; and what the
+//! way to a surface scatters of their light.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
+mod images;
+
 use std::f64::consts::{PI, TAU};
 
+use airglow_fog::reference::environment::factors;
 use airglow_fog::reference::spread::exact;
-use airglow_fog::{Background, Distant, Fog, Medium, Settings};
+use airglow_fog::{
+    Background, Camera, Distant, Environment, Fog, Frame, Medium, Prepared, Preset, Seen, Settings, View,
+};
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
 use airglow_gpu::{Image, Label, Location};
 use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+use airglow_math::World;
 use airglow_math::sh;
 use airglow_math::sphere::equirect;
 use airglow_tests::device::{Fixture, fixture_with};
+use glam::DVec3;
+use images::{Images, PIXELS, SIZE, view_distance};
 
 const WIDTH: u32 = 37;
 const HEIGHT: u32 = 19;
@@ -52,7 +61,7 @@ fn fogged(fixture: &Fixture, distant: &Distant) -> Vec<[f32; 4]> {
                 State::idle(ImageLayout::UNDEFINED),
                 Access::ColorAttachmentWrite,
             )?;
-            background.record(recorder, &view, &target_view, distant).unwrap();
+            background.record(recorder, &view, &target_view, distant, Seen::Whole).unwrap();
             recorder.transition(&target, Access::ColorAttachmentWrite, Access::TransferSource)?;
             copy = Some(recorder.read_back_image(&target_view)?);
             Ok(())
@@ -61,7 +70,7 @@ fn fogged(fixture: &Fixture, distant: &Distant) -> Vec<[f32; 4]> {
     copy.unwrap().read::<[f32; 4]>().unwrap()
 }
 
-fn middle(x: u32, y: u32) -> glam::DVec3 {
+fn middle(x: u32, y: u32) -> DVec3 {
     let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
     equirect::direction(place[0] / f64::from(WIDTH), place[1] / f64::from(HEIGHT))
 }
@@ -72,7 +81,7 @@ fn solid_angle(y: u32) -> f64 {
 
 /// The picture in a direction, the map constant on each texel: every texel in 3² parts, those about the direction in
 /// 24².
-fn truth(environment: &[[f32; 4]], direction: glam::DVec3, seen: [f32; 4], distant: &Distant) -> [f64; 3] {
+fn truth(environment: &[[f32; 4]], direction: DVec3, seen: [f32; 4], distant: &Distant) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for y in 0..HEIGHT {
         for x in 0..WIDTH {
@@ -181,4 +190,64 @@ fn bands_fall_and_a_tabulated_brdf_is_spread_by_them() {
     let expected = 2.0 * (distant.band_factors(3).unwrap()[1][0] - (-0.8_f64).exp());
     assert!((effective[9 + sh::index(1, 0)] - expected).abs() < 1e-12);
     assert!(distant.effective_brdf(0, 3, &table[..10]).is_err());
+}
+
+/// What the pass leaves of a surface of radiance 2 and adds to it before an environment, without a lamp.
+#[test]
+fn before_a_surface_the_light_of_the_environment_is_scattered_and_behind_it_left_alone() {
+    let fixture = fixture_with(&Fog::requirements(&Settings::default()));
+    let mut radiance = [[0.0; 3]; 9];
+    for (i, band) in radiance.iter_mut().enumerate() {
+        let value = if i == 0 { 5.0 } else { 0.8 * (i as f64).sin() };
+        *band = [value, 0.8 * value, 1.3 * value];
+    }
+    let environment = Environment { distance: 60.0, radiance };
+    let medium =
+        Medium { extinction: [0.005, 0.02, 0.08], albedo: [1.0, 0.9, 0.7], ..Medium::with_visibility(1.0) };
+    let edges = [-0.8, 0.8, -0.45, 0.45];
+    let camera = Camera { position: DVec3::Y, right: DVec3::X, up: DVec3::Y, forward: DVec3::NEG_Z, edges };
+    let view =
+        View { world: World::default(), camera, medium, lights: Vec::new(), environment: Some(environment) };
+    let images = Images::new(&fixture, 2.0);
+    for preset in [Preset::Default, Preset::Reference] {
+        let settings = Settings { preset, environment: true, ..Settings::default() };
+        let fog = Fog::new(fixture.context(), settings).unwrap();
+        let frame = Frame { size: SIZE, surface: (), depth: (), target: Some(()), view: view.clone() };
+        let Prepared::Pass(pass) = fog.prepare(&frame).unwrap() else {
+            unreachable!("the medium is not clear")
+        };
+        let picture = images.draw(&fixture, &pass);
+        let mut worst = 0.0_f64;
+        for pixel in (0..PIXELS).step_by(13) {
+            let [x, y] = [pixel % SIZE[0] as usize, pixel / SIZE[0] as usize].map(|at| at as f64 + 0.5);
+            let ray =
+                DVec3::new(1.6 * x / f64::from(SIZE[0]) - 0.8, 0.45 - 0.9 * y / f64::from(SIZE[1]), -1.0);
+            let mut basis = vec![0.0; 9];
+            sh::evaluate(3, ray.normalize(), &mut basis).unwrap();
+            for c in 0..3 {
+                let optical = medium.extinction[c] * 60.0;
+                let expected = match view_distance(pixel) {
+                    None => 2.0,
+                    Some(metres) => {
+                        let way = medium.extinction[c] * metres * ray.length();
+                        let factors = factors(3, way.min(optical), optical).unwrap();
+                        let band = |l: usize| -> f64 {
+                            (l * l..(l + 1) * (l + 1)).map(|i| radiance[i][c] * basis[i]).sum()
+                        };
+                        let scattered: f64 = (0..3).map(|l| factors[l] * band(l)).sum();
+                        2.0 * (-way).exp() + medium.albedo[c] * scattered
+                    }
+                };
+                worst = worst.max((f64::from(picture[pixel][c]) / expected - 1.0).abs());
+            }
+        }
+        println!("{preset:?}: worst {worst:.2e}");
+        // Most of it is what f32 loses of a depth next to the far plane.
+        assert!(worst < 1e-4, "{preset:?}: {worst}");
+    }
+    let both = Settings { environment: true, height: true, ..Settings::default() };
+    assert!(both.check().is_err());
+    let frame = Frame { size: SIZE, surface: (), depth: (), target: Some(()), view };
+    let refused = Fog::new(fixture.context(), Settings::default()).unwrap().prepare(&frame).err().unwrap();
+    assert!(refused.to_string().contains("Settings::environment"), "{refused}");
 }

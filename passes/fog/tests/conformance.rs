@@ -6,11 +6,11 @@ use airglow_fog::{
     ACCESSES, BINDINGS, Bindings, Camera, Fog, Frame, Light, Medium, Pass, PhaseKind, Prepared, Preset,
     Settings, View,
 };
-use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
+use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
 use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, PassKind};
+use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_math::World;
-use airglow_tests::conformance::{Content, Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::conformance::{Given, HostResource, Named, Refusal, Room, conform};
 use airglow_tests::reflect::Module;
 use glam::DVec3;
 
@@ -26,17 +26,23 @@ fn view() -> View {
         edges: [-0.8, 0.8, -0.45, 0.45],
     };
     let lamp = Light { radius: 0.1, ..Light::point(DVec3::new(1.0, 3.0, 0.0), [40.0, 30.0, 15.0]) };
-    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights: vec![lamp] }
+    View {
+        world: World::default(),
+        camera,
+        medium: Medium::with_visibility(60.0),
+        lights: vec![lamp],
+        environment: None,
+    }
 }
 
-/// Fog between a host's draw and a host's picture, which is copied to a buffer of the host's.
+/// Fog between a host's draw and a host's picture.
 struct Fogged {
     fog: Fog,
     pass: Option<Pass>,
 }
 
 fn image(format: Format, usage: ImageUsageFlags) -> ImageDesc {
-    ImageDesc { usage: usage | ImageUsageFlags::TRANSFER_DST, ..ImageDesc::new_2d(SIZE[0], SIZE[1], format) }
+    ImageDesc { usage, ..ImageDesc::new_2d(SIZE[0], SIZE[1], format) }
 }
 
 impl Room for Fogged {
@@ -52,42 +58,15 @@ impl Room for Fogged {
             if pixel < PIXELS / 3 { 1.0_f32 } else { 0.9 + 0.09 * pixel as f32 / PIXELS as f32 }
         };
         let depth: Vec<u8> = (0..PIXELS).flat_map(|pixel| depth(pixel).to_le_bytes()).collect();
-        let usage = BufferUsageFlags::TRANSFER_SRC | BufferUsageFlags::TRANSFER_DST;
-        let copy = BufferDesc { size: 16 * PIXELS as u64, usage };
-        let target = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
+        let written = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
         let read = ImageUsageFlags::SAMPLED | ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
-        let resource = |name, content, entry: Access, exit: Access| HostResource {
-            name,
-            content,
-            entry: entry.into(),
-            exit: exit.into(),
-        };
-        let sampled = Access::FragmentSampled;
+        let (surface_desc, picture) = (image(hdr, ImageUsageFlags::SAMPLED), image(hdr, written));
+        let drawn = [Access::ColorAttachmentWrite, Access::TransferSource];
+        let read_depth = [Access::FragmentSampledDepth; 2];
         vec![
-            resource(
-                "surface",
-                Content::Image(image(hdr, ImageUsageFlags::SAMPLED), surface),
-                sampled,
-                sampled,
-            ),
-            resource(
-                "depth",
-                Content::Image(image(Format::D32_SFLOAT, read), depth),
-                Access::FragmentSampledDepth,
-                Access::FragmentSampledDepth,
-            ),
-            resource(
-                "picture",
-                Content::Image(image(hdr, target), vec![0xff; 16 * PIXELS]),
-                Access::ColorAttachmentWrite,
-                Access::TransferSource,
-            ),
-            resource(
-                "copy",
-                Content::Buffer(copy, vec![0; 16 * PIXELS]),
-                Access::TransferDestination,
-                Access::TransferSource,
-            ),
+            HostResource::image("surface", surface_desc, surface, [Access::FragmentSampled; 2]),
+            HostResource::image("depth", image(Format::D32_SFLOAT, read), depth, read_depth),
+            HostResource::image("picture", picture, vec![0xff; 16 * PIXELS], drawn),
         ]
     }
 
@@ -98,19 +77,11 @@ impl Room for Fogged {
         _: &mut Imports,
         host: &[Named],
     ) -> Result<(), Refusal> {
-        let [Named::Image(surface), Named::Image(depth), Named::Image(picture), Named::Buffer(copy)] = host
-        else {
+        let [Named::Image(surface), Named::Image(depth), Named::Image(picture)] = *host else {
             return Err("other resources".into());
         };
-        let frame =
-            Frame { size: SIZE, surface: *surface, depth: *depth, target: Some(*picture), view: view() };
-        let fogged = self.fog.add(graph, &frame)?;
-        let mut pass = graph.pass("copy", PassKind::Transfer);
-        pass.read(&fogged.colour, Access::TransferSource);
-        let (colour, copy) = (fogged.colour, pass.write(*copy, Access::TransferDestination));
-        pass.record(Box::new(move |recorder, resources| {
-            recorder.copy_image_to_buffer(&resources.view(&colour)?, resources.buffer(&copy)?)
-        }));
+        let frame = Frame { size: SIZE, surface, depth, target: Some(picture), view: view() };
+        self.fog.add(graph, &frame)?;
         Ok(())
     }
 
@@ -118,28 +89,18 @@ impl Room for Fogged {
         let frame = Frame { size: SIZE, surface: (), depth: (), target: Some(()), view: view() };
         let Prepared::Pass(pass) = self.fog.prepare(&frame)? else { return Err("left out".into()) };
         self.pass = Some(pass);
-        let [surface, depth, picture] = ACCESSES.map(|(_, access)| access);
-        Ok(vec![
-            Some((surface, surface)),
-            Some((depth, depth)),
-            Some((picture, Access::TransferSource)),
-            Some((Access::TransferDestination, Access::TransferDestination)),
-        ])
+        Ok(ACCESSES.map(|(_, access)| Some((access, access))).to_vec())
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        let (
-            Some(pass),
-            [Given::Image(surface), Given::Image(depth), Given::Image(picture), Given::Buffer(copy)],
-        ) = (&self.pass, host)
+        let (Some(pass), [Given::Image(surface), Given::Image(depth), Given::Image(picture)]) =
+            (&self.pass, host)
         else {
             return Err("other resources".into());
         };
         let target = picture.full_view()?;
         let bindings = Bindings { surface: surface.full_view()?, depth: depth.full_view()?, target };
-        pass.record(recorder, &bindings)?;
-        recorder.transition(picture, ACCESSES[2].1, Access::TransferSource)?;
-        Ok(recorder.copy_image_to_buffer(&picture.full_view()?, copy)?)
+        Ok(pass.record(recorder, &bindings)?)
     }
 }
 

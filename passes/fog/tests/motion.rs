@@ -2,18 +2,15 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
-use airglow_fog::{
-    ACCESSES, Bindings, Camera, Fog, Frame, Light, Medium, Pass, Phase, Prepared, Settings, View,
-};
-use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
-use airglow_gpu::{Image, Label, Location};
-use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+mod images;
+mod tiles;
+
+use airglow_fog::{Camera, Fog, Frame, Light, Medium, Phase, Prepared, Settings, View};
 use airglow_math::World;
 use airglow_tests::device::{Fixture, fixture_with};
 use glam::DVec3;
+use images::{Images, PIXELS, SIZE};
 
-const SIZE: [u32; 2] = [48, 27];
-const PIXELS: usize = 48 * 27;
 const STEPS: usize = 200;
 /// Metres.
 const STEP: f64 = 0.01;
@@ -39,76 +36,7 @@ fn view(eye: DVec3, lamp: DVec3, intensity: f64) -> View {
         thinning: None,
     };
     let lamp = Light { radius: RADIUS, ..Light::point(lamp, [intensity, 0.5 * intensity, 0.25 * intensity]) };
-    View { world: World::default(), camera, medium, lights: vec![lamp] }
-}
-
-/// A black surface, its depth and the picture.
-struct Images([Image; 3]);
-
-impl Images {
-    fn new(fixture: &Fixture) -> Self {
-        let context = fixture.context();
-        let make = |name, format, usage| {
-            let desc = ImageDesc { usage, ..ImageDesc::new_2d(SIZE[0], SIZE[1], format) };
-            context.create_image(Label::new("test", name), &desc).unwrap()
-        };
-        let given = ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST;
-        let hdr = Format::R32G32B32A32_SFLOAT;
-        let images = [
-            make("surface", hdr, given),
-            make("depth", Format::D32_SFLOAT, given | ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
-            make("picture", hdr, ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC),
-        ];
-        let staging = |bytes: &[f32]| {
-            let desc = BufferDesc { size: size_of_val(bytes) as u64, usage: BufferUsageFlags::TRANSFER_SRC };
-            let buffer =
-                context.create_buffer(Label::new("test", "texels"), &desc, Location::Upload).unwrap();
-            buffer.write(0, bytes).unwrap();
-            buffer
-        };
-        // Surfaces from 0.2 m to 100 m away, and none in the upper third.
-        let farthest = World::default().depth.farthest() as f32;
-        let depth = |pixel: usize| {
-            let share = (pixel * 7 % PIXELS) as f32 / PIXELS as f32;
-            if pixel < PIXELS / 3 { farthest } else { 0.5 * 0.002_f32.powf(share) }
-        };
-        let contents = [staging(&[0.0; 4 * PIXELS]), staging(&(0..PIXELS).map(depth).collect::<Vec<f32>>())];
-        fixture
-            .device()
-            .run(context, |recorder| {
-                for ((image, contents), (_, access)) in images.iter().zip(&contents).zip(ACCESSES) {
-                    recorder.transition(
-                        image,
-                        State::idle(ImageLayout::UNDEFINED),
-                        Access::TransferDestination,
-                    )?;
-                    recorder.copy_buffer_to_image(contents, &image.full_view()?)?;
-                    recorder.transition(image, Access::TransferDestination, access)?;
-                }
-                Ok(())
-            })
-            .unwrap();
-        Self(images)
-    }
-
-    fn draw(&self, fixture: &Fixture, pass: &Pass) -> Vec<[f32; 4]> {
-        let [surface, depth, picture] = &self.0;
-        let mut copy = None;
-        fixture
-            .device()
-            .run(fixture.context(), |recorder| {
-                let views = [surface.full_view()?, depth.full_view()?, picture.full_view()?];
-                let [surface, depth, target] = views.clone();
-                let write = Access::ColorAttachmentWrite;
-                recorder.transition(picture, State::idle(ImageLayout::UNDEFINED), write)?;
-                pass.record(recorder, &Bindings { surface, depth, target })?;
-                recorder.transition(picture, write, Access::TransferSource)?;
-                copy = Some(recorder.read_back_image(&views[2])?);
-                Ok(())
-            })
-            .unwrap();
-        copy.unwrap().read::<[f32; 4]>().unwrap()
-    }
+    View { world: World::default(), camera, medium, lights: vec![lamp], environment: None }
 }
 
 /// What a way gave.
@@ -133,7 +61,7 @@ fn steps(fixture: &Fixture, way: impl Fn(f64) -> View) -> Steps {
     let fog = Fog::new(fixture.context(), settings).unwrap();
     let frame = Frame { size: SIZE, surface: (), depth: (), target: Some(()), view: way(0.0) };
     let Prepared::Pass(pass) = fog.prepare(&frame).unwrap() else { panic!("there is a medium") };
-    let images = Images::new(fixture);
+    let images = Images::new(fixture, 0.0);
     let factor = (STEP * ((1.0 + 3.0 * G / (1.0 - G * G)) / RADIUS + EXTINCTION)).exp();
     let mut before = images.draw(fixture, &pass);
     let (mut worst, mut left_out, mut lit) = (0.0_f64, 0, 0);

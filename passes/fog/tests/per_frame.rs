@@ -36,7 +36,7 @@ fn view(lamps: usize) -> View {
         Light { radius: 0.1, ..Light::point(position, [40.0, 30.0, 15.0]) }
     };
     let lights = (0..lamps).map(lamp).collect();
-    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights }
+    View { world: World::default(), camera, medium: Medium::with_visibility(60.0), lights, environment: None }
 }
 
 /// What a host gives: the surface, its depth, the picture.
@@ -88,7 +88,7 @@ fn a_lamp_that_enters_makes_no_plan_no_pipeline_and_no_allocation() {
 
     let (graph, imports, fogged) = declare(&fog, &images, 0);
     let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
-    assert!(plan.text().contains("fog") && plan.pipelines()[0].prepared == 1, "{}", plan.text());
+    assert!(plan.text().contains("fog") && plan.pipelines()[0].prepared == 3, "{}", plan.text());
     let mut execution = Execution::prepare(context, plan).unwrap();
     let control = fogged.control.unwrap();
     let views = LAMPS.map(view);

@@ -7,9 +7,11 @@
 // and FOG_TAPS, 6 or 16,
 // and may define
 //   FOG_HEIGHT                       1: the medium thins with height
+//   FOG_POINTS                       1: no light has a cone, a range or a box
 //   FOG_VISIBILITY(light, position)  what of a light arrives at a position relative to the eye, 0 to 1: the host's
 //                                    shadow map; without it there is no such branch
 
+#include "fog/light.glsl"
 #include "fog/phase.glsl"
 #include "fog/path.glsl"
 #include "fog/interval.glsl"
@@ -21,16 +23,6 @@ struct FogMedium {
     vec3 scattering; // 1/m, the same
     vec4 phase;      // polynomial: weights; Henyey-Greenstein: g; Draine: g, alpha
     float thinning;  // 1 over the height, m, in which it thins by e, along +Y
-};
-
-// A light, relative to the eye.
-struct FogLight {
-    vec4 position_radius;  // m
-    vec4 intensity_reach;  // W/sr, see fog_seen; least distance along a ray at which it is evaluated
-    vec4 axis_cosine;      // of a spot's cone, away from the light; cosine of its half angle, -2 for none
-    vec4 falloff_range;    // scale and offset of the cosine; range, m, 0 for none; 1 where it shines within a box
-    vec4 low;              // corners of the box
-    vec4 high;
 };
 
 float fog_phase(vec4 values, vec2 halves)
@@ -95,6 +87,7 @@ vec3 fog_seen(FogMedium medium, vec3 intensity, vec4 position_radius)
 vec2 fog_interval(FogLight light, vec3 direction, float distance)
 {
     vec2 interval = vec2(0.0, distance);
+#if !FOG_POINTS
     vec3 position = light.position_radius.xyz;
     if (light.falloff_range.z > 0.0) {
         interval = fog_in_sphere(interval, position, light.falloff_range.z, direction);
@@ -103,6 +96,7 @@ vec2 fog_interval(FogLight light, vec3 direction, float distance)
         interval = fog_in_cone(interval, position, light.axis_cosine.xyz, light.axis_cosine.w, direction);
     }
     if (light.falloff_range.w > 0.5) { interval = fog_in_box(interval, light.low.xyz, light.high.xyz, direction); }
+#endif
     return interval;
 }
 
@@ -111,6 +105,7 @@ vec2 fog_interval(FogLight light, vec3 direction, float distance)
 float fog_falloff(FogLight light, vec3 towards, float distance)
 {
     float factor = 1.0;
+#if !FOG_POINTS
     if (light.axis_cosine.w > -1.5) {
         float cosine = dot(light.axis_cosine.xyz, towards) / max(distance, 1e-30);
         float edge = clamp(cosine * light.falloff_range.x + light.falloff_range.y, 0.0, 1.0);
@@ -120,18 +115,28 @@ float fog_falloff(FogLight light, vec3 towards, float distance)
         float share = distance / light.falloff_range.z;
         factor *= clamp(1.0 - share * share * share * share, 0.0, 1.0);
     }
+#endif
     return factor;
 }
 
-// Where a spot's intensity has a kink within the part of the ray that it reaches: the ends of its plateau, or the
-// beginning of the part twice where it has none there.
+// Where the part that begins at `begin` ends: a spot's intensity has a kink at either end of its plateau.
+float fog_part_end(vec2 plateau, float begin, float end)
+{
+    return begin < plateau.x ? plateau.x : begin < plateau.y ? plateau.y : end;
+}
+
+// The plateau of a spot's intensity in the part of the ray that it reaches; the beginning twice where there is none.
 vec2 fog_plateau(FogLight light, vec3 direction, vec2 interval)
 {
-    if (light.axis_cosine.w <= -1.5) { return interval.xx; }
+#if !FOG_POINTS
     float cosine = (1.0 - light.falloff_range.y) / light.falloff_range.x;
-    if (cosine >= 1.0) { return interval.xx; }
-    vec2 plateau = fog_in_cone(interval, light.position_radius.xyz, light.axis_cosine.xyz, cosine, direction);
-    return plateau.x < plateau.y ? plateau : interval.xx;
+    if (light.axis_cosine.w > -1.5 && cosine < 1.0) {
+        vec3 position = light.position_radius.xyz;
+        vec2 plateau = fog_in_cone(interval, position, light.axis_cosine.xyz, cosine, direction);
+        if (plateau.x < plateau.y) { return plateau; }
+    }
+#endif
+    return interval.xx;
 }
 
 // The integral over a part of the ray, without what all parts share: scattering coefficient and intensity.
@@ -148,7 +153,7 @@ vec3 fog_part(FogMedium medium, FogLight light, int index, vec3 direction, FogPa
         vec3 point = at * direction;
         float to_light = 0.5 * (m + path.off_squared / m);
         float weight = tap.weight * fog_falloff(light, point - position, to_light);
-        weight *= fog_phase(medium.phase, fog_halves(path, m));
+        weight *= fog_phase(medium.phase, vec2(path.off_squared, m * m) * tap.density);
 #ifdef FOG_VISIBILITY
         weight *= FOG_VISIBILITY(index, point);
 #endif
@@ -160,7 +165,7 @@ vec3 fog_part(FogMedium medium, FogLight light, int index, vec3 direction, FogPa
             + to_light * density * fog_mean_density((position.y - point.y) * medium.thinning);
         sum += weight * density * exp(-medium.extinction * legs);
 #else
-        sum += weight * exp(-medium.extinction * (segment.before + tap.excess));
+        sum += weight * exp(-medium.extinction * (segment.before + light.high.w + tap.excess));
 #endif
     }
     return sum;
@@ -174,12 +179,13 @@ vec3 fog_airlight(FogMedium medium, FogLight light, int index, vec3 direction, f
     if (interval.x >= interval.y) { return vec3(0.0); }
     FogPath path = fog_path(light.position_radius.xyz, direction, light.position_radius.w);
     vec2 plateau = fog_plateau(light, direction, interval);
-    float ends[4] = float[](interval.x, plateau.x, plateau.y, interval.y);
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 3; ++i) {
-        if (ends[i] < ends[i + 1]) {
-            sum += fog_part(medium, light, index, direction, path, vec2(ends[i], ends[i + 1]));
-        }
-    }
+    float begin = interval.x;
+    do {
+        float end = fog_part_end(plateau, begin, interval.y);
+        // Always so by the loop's own condition, but llvmpipe (Mesa 22.3) lets a lane go on while its neighbours do.
+        if (begin < end) { sum += fog_part(medium, light, index, direction, path, vec2(begin, end)); }
+        begin = end;
+    } while (begin < interval.y);
     return medium.scattering * light.intensity_reach.rgb * sum;
 }

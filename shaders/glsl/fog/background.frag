@@ -20,6 +20,7 @@ layout(push_constant) uniform Settings {
     ivec2 size;   // texels of the map
     ivec2 target; // pixels of the result
     int levels;   // the last level; 0: there is only the map
+    float straight; // 1: with what arrives straight, 0: the glow alone
 } settings;
 
 layout(location = 0) out vec4 radiance;
@@ -108,5 +109,5 @@ void main()
         if (ended) { break; }
     }
     vec3 straight = texelFetch(environment, texel, 0).rgb;
-    radiance = vec4(exp(-settings.optical.rgb) * straight + settings.albedo.rgb * glow, 1.0);
+    radiance = vec4(settings.straight * exp(-settings.optical.rgb) * straight + settings.albedo.rgb * glow, 1.0);
 }

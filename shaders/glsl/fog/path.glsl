@@ -52,12 +52,6 @@ FogSegment fog_segment(FogPath path, float begin, float extent)
     return FogSegment(near.x, before, fog_growth(extent, near, fog_reckon(path, begin - path.along + extent)));
 }
 
-// The squared cosine and sine of half the scattering angle where m is reached.
-vec2 fog_halves(FogPath path, float m)
-{
-    return vec2(path.off_squared, m * m) / (path.off_squared + m * m);
-}
-
 // The distance along the ray where m is reached.
 float fog_distance(FogPath path, float m)
 {

@@ -7,30 +7,9 @@
 //
 // FOG_TAPS  6: relative error 4e-4 at the 99th percentile, 7e-4 at most; 16: 5e-6 and 1e-5
 
+#include "fog/rule.glsl"
+
 const float FOG_STRETCH = 1.5;
-#if FOG_TAPS == 6
-// Optical length beyond which what is left is below the error.
-const float FOG_CUT = 8.0;
-// Nodes in the first half of 0 to 1 and their weights; the second half mirrors them.
-const vec2 FOG_RULE[3] = vec2[](
-    vec2(0.0337652428984240, 0.0856622461895851),
-    vec2(0.1693953067668678, 0.1803807865240694),
-    vec2(0.3806904069584016, 0.2339569672863455));
-#endif
-#if FOG_TAPS == 16
-// Optical length beyond which what is left is below the error.
-const float FOG_CUT = 15.0;
-// Nodes in the first half of 0 to 1 and their weights; the second half mirrors them.
-const vec2 FOG_RULE[8] = vec2[](
-    vec2(0.0052995325041750, 0.0135762297058771),
-    vec2(0.0277124884633837, 0.0311267619693237),
-    vec2(0.0671843988060841, 0.0475792558412463),
-    vec2(0.1222977958224985, 0.0623144856277670),
-    vec2(0.1910618777986781, 0.0747979944082884),
-    vec2(0.2709916111713863, 0.0845782596975013),
-    vec2(0.3591982246103705, 0.0913017075224618),
-    vec2(0.4524937450811813, 0.0947253052275343));
-#endif
 
 // What all taps of a segment share.
 struct FogTaps {
@@ -42,7 +21,8 @@ struct FogTaps {
 // One point of the rule.
 struct FogTap {
     float excess;
-    float weight; // with 2 / d^2 in it
+    float weight;  // with 2 / d^2 in it
+    float density; // 1 / (off^2 + m^2): times off^2 and m^2 the squared cosine and sine of half the scattering angle
 };
 
 // `least` is the smallest extinction that the taps are to serve, 1/m. A `path` that is said to be off the light by another
@@ -64,8 +44,11 @@ FogTap fog_tap(FogTaps taps, FogPath path, FogSegment segment, int i)
     vec2 sides = mirrored ? vec2(1.0 - rule.x, rule.x) : vec2(rule.x, 1.0 - rule.x);
     float y = taps.extent * sides.x;
     float o = taps.finish + taps.extent * sides.y;
-    float excess = taps.scale * y / (o * o);
+    float inverse = 1.0 / o;
+    float squared = inverse * inverse;
+    float excess = taps.scale * y * squared;
     float m = segment.start + excess;
-    float slope = taps.scale * (1.0 + y) / (o * o * o);
-    return FogTap(excess, 2.0 * rule.y * taps.extent * slope / (path.off_squared + m * m));
+    float density = 1.0 / (path.off_squared + m * m);
+    float slope = taps.scale * (1.0 + y) * (squared * inverse);
+    return FogTap(excess, 2.0 * rule.y * taps.extent * slope * density, density);
 }

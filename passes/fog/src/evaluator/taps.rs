@@ -46,13 +46,20 @@ pub struct Tap {
     pub weight: f32,
 }
 
+/// By how much the scale of the taps differs from the light's offset where the phase function has a lobe: Henyey and
+/// Greenstein's over the distances of the paths is √(h² + m²) / ((1 - g)² h² + (1 + g)² m²)^(3/2), of the size of
+/// h (1 - g) / (1 + g). 1 without a lobe.
+pub fn narrowing(g: f32) -> f32 {
+    (1.0 - g) / (1.0 + g)
+}
+
 /// The taps of a rule: the sum of `weight * f` is the integral of f dx/d².
 ///
-/// `extinction` says how far to reach; with several, the smallest.
-pub fn taps(segment: Segment, extinction: f32, rule: Rule) -> impl Iterator<Item = Tap> {
-    let Segment { offset, start, scale, excess, .. } = segment;
+/// `extinction` says how far to reach; with several, the smallest. `narrowing` is that of the phase function.
+pub fn taps(segment: Segment, extinction: f32, narrowing: f32, rule: Rule) -> impl Iterator<Item = Tap> {
+    let Segment { offset, start, excess, .. } = segment;
     let square = offset * offset;
-    let step = SPREAD * scale;
+    let step = SPREAD * (square * narrowing * narrowing + start * start).sqrt();
     let reach = if extinction * excess > rule.reach { rule.reach / extinction } else { excess };
     let ratio = (reach / step).min(1e10);
     // y of the far end, from q there: v o² + o - 1 = 0 for o = 1 - y.
@@ -75,10 +82,10 @@ pub fn taps(segment: Segment, extinction: f32, rule: Rule) -> impl Iterator<Item
     })
 }
 
-/// K times the phase function (of the scattering angle's cosine, 1/sr): multiply by [`super::transmittance`] of the
-/// segment's path, scattering coefficient and intensity for radiance.
-pub fn kernel(segment: Segment, extinction: f32, rule: Rule, phase: impl Fn(f32) -> f32) -> f32 {
-    taps(segment, extinction, rule)
+/// K times a phase function of mean cosine `g` (of the scattering angle's cosine, 1/sr): multiply by
+/// [`super::transmittance`] of the segment's path, scattering coefficient and intensity for radiance.
+pub fn kernel(segment: Segment, extinction: f32, rule: Rule, g: f32, phase: impl Fn(f32) -> f32) -> f32 {
+    taps(segment, extinction, narrowing(g), rule)
         .map(|tap| tap.weight * (-extinction * tap.excess).exp() * phase(tap.cosine))
         .sum()
 }

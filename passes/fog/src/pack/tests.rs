@@ -7,7 +7,7 @@ use airglow_math::world::Axes;
 
 use super::*;
 use crate::light::{Bounds, Cone};
-use crate::{Camera, Medium};
+use crate::{Camera, Light, Medium};
 
 const EYE: DVec3 = DVec3::new(3.0, 1.7, 8.0);
 
@@ -31,7 +31,7 @@ fn view(world: World, far: DVec3) -> View {
         bounds: Some(Bounds { low: corners[0].min(corners[1]), high: corners[0].max(corners[1]) }),
         ..Light::point(place(DVec3::new(1.0, 3.0, 0.0)), [40.0, 30.0, 15.0])
     };
-    View { world, camera, medium: Medium::with_visibility(60.0), lights: vec![light] }
+    View { world, camera, medium: Medium::with_visibility(60.0), lights: vec![light], environment: None }
 }
 
 fn assert_same(name: &str, found: &FrameConstants, expected: &FrameConstants) {

@@ -6,6 +6,7 @@
 pub mod airlight;
 pub mod closed_form;
 pub mod cone;
+pub mod environment;
 pub mod height;
 pub mod multiple;
 pub mod spread;

@@ -66,7 +66,7 @@ pub fn band_factors(
 }
 
 /// `P_l(x)`.
-fn legendre(l: usize, x: f64) -> f64 {
+pub(super) fn legendre(l: usize, x: f64) -> f64 {
     let (mut below, mut value) = (0.0, 1.0);
     for k in 1..=l {
         let k = k as f64;

@@ -2,7 +2,9 @@
 
 mod angles;
 mod features;
+mod motion;
 mod refusals;
+mod surfaces;
 mod sweeps;
 
 use crate::FogError;
@@ -75,6 +77,8 @@ pub fn cases(bench: &Bench<'_>, only: Option<&str>) -> Result<Vec<Outcome>, FogE
         angles::rows().into_iter().filter(|(name, _)| chosen(name)).collect();
     let mut outcomes = of_rows(bench, rows)?;
     outcomes.extend(features::cases(bench, chosen)?);
+    outcomes.extend(surfaces::cases(bench, chosen)?);
+    outcomes.extend(motion::cases(bench, chosen)?);
     outcomes.extend(refusals::cases(chosen));
     Ok(outcomes)
 }

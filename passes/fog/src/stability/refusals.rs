@@ -18,7 +18,13 @@ fn sound() -> View {
         edges: [-1.0, 1.0, -1.0, 1.0],
     };
     let medium = Medium::with_visibility(50.0);
-    View { world: World::default(), camera, medium, lights: vec![Light::point(DVec3::Y, [1.0; 3])] }
+    View {
+        world: World::default(),
+        camera,
+        medium,
+        lights: vec![Light::point(DVec3::Y, [1.0; 3])],
+        environment: None,
+    }
 }
 
 /// Something that spoils a sound view, and the field that the refusal is to name.

@@ -95,7 +95,7 @@ impl SceneFog {
             forward: -axis(transform.z_axis),
             edges: [-x, x, -y, y],
         };
-        fog::View { world, camera, medium: self.medium, lights: self.lights.clone() }
+        fog::View { world, camera, medium: self.medium, lights: self.lights.clone(), environment: None }
     }
 }
 

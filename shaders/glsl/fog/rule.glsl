@@ -1,0 +1,52 @@
+// Rules of Gauss and Legendre on 0 to 1, by FOG_TAPS; 6 and 16 ship, the others are for `airglow report`.
+//
+// FOG_RULE: nodes in the first half and their weights; the second half mirrors them. FOG_CUT: optical length beyond
+// which what is left is below the rule's error.
+
+#if FOG_TAPS == 1
+const float FOG_CUT = 3.0;
+const vec2 FOG_RULE[1] = vec2[](
+    vec2(0.5, 1.0));
+#elif FOG_TAPS == 2
+const float FOG_CUT = 4.0;
+const vec2 FOG_RULE[1] = vec2[](
+    vec2(0.2113248654051871, 0.5000000000000000));
+#elif FOG_TAPS == 4
+const float FOG_CUT = 6.0;
+const vec2 FOG_RULE[2] = vec2[](
+    vec2(0.0694318442029737, 0.1739274225687268),
+    vec2(0.3300094782075719, 0.3260725774312732));
+#elif FOG_TAPS == 6
+const float FOG_CUT = 8.0;
+const vec2 FOG_RULE[3] = vec2[](
+    vec2(0.0337652428984240, 0.0856622461895851),
+    vec2(0.1693953067668678, 0.1803807865240694),
+    vec2(0.3806904069584016, 0.2339569672863455));
+#elif FOG_TAPS == 8
+const float FOG_CUT = 9.0;
+const vec2 FOG_RULE[4] = vec2[](
+    vec2(0.0198550717512319, 0.0506142681451885),
+    vec2(0.1016667612931866, 0.1111905172266872),
+    vec2(0.2372337950418355, 0.1568533229389434),
+    vec2(0.4082826787521751, 0.1813418916891808));
+#elif FOG_TAPS == 12
+const float FOG_CUT = 12.0;
+const vec2 FOG_RULE[6] = vec2[](
+    vec2(0.0092196828766404, 0.0235876681932557),
+    vec2(0.0479413718147626, 0.0534696629976595),
+    vec2(0.1150486629028477, 0.0800391642716732),
+    vec2(0.2063410228566913, 0.1015837133615329),
+    vec2(0.3160842505009099, 0.1167462682691773),
+    vec2(0.4373832957442655, 0.1245735229067013));
+#elif FOG_TAPS == 16
+const float FOG_CUT = 15.0;
+const vec2 FOG_RULE[8] = vec2[](
+    vec2(0.0052995325041750, 0.0135762297058771),
+    vec2(0.0277124884633837, 0.0311267619693237),
+    vec2(0.0671843988060841, 0.0475792558412463),
+    vec2(0.1222977958224985, 0.0623144856277670),
+    vec2(0.1910618777986781, 0.0747979944082884),
+    vec2(0.2709916111713863, 0.0845782596975013),
+    vec2(0.3591982246103705, 0.0913017075224618),
+    vec2(0.4524937450811813, 0.0947253052275343));
+#endif
