@@ -1,17 +1,11 @@
 #!/usr/bin/env bash
-# Every check of the project, as CI runs it: formatting, shaders, clippy, documentation, tests. Safe to repeat.
-#   tools/test.sh [--rooms]        --rooms runs tools/rooms.sh too
+# Every check of the project, as CI runs it: formatting, shaders, clippy, documentation, tests, rooms. Safe to repeat.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/prepare.sh
 
-rooms=false
-case "$*" in
-    "") ;;
-    --rooms) rooms=true ;;
-    *) fail "usage: tools/test.sh [--rooms]" ;;
-esac
-say "checks of airglow: formatting, shaders, clippy, documentation, tests"
+[ $# = 0 ] || fail "usage: tools/test.sh"
+say "checks of airglow: formatting, shaders, clippy, documentation, tests, rooms"
 echo "Expect about 15 minutes on two cores from a clean clone, about 3 when everything is built."
 
 require_toolchain
@@ -41,7 +35,7 @@ step clippy cargo clippy --locked --workspace --all-targets -- -D warnings
 # The libraries for hosts in C hold nothing but what airglow-capi exports, and one shares its name with the umbrella.
 step documentation env RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude airglow-c --exclude airglow-conform --lib --no-deps
 step tests cargo test --locked --workspace --no-fail-fast
-! $rooms || step rooms tools/rooms.sh
+step rooms tools/rooms.sh
 
 say "summary"
 printf '%s\n' "${summary[@]}"

@@ -9,8 +9,8 @@ use std::ffi::c_void;
 
 pub use airglow_conformance::*;
 
-/// Runs a room made by `make` on a device of its own by both roads, asserts what a host relies on, and returns the bytes
-/// of its buffers.
+/// Runs a room made by `make` on a device of its own by both roads, asserts what a host relies on, and returns the
+/// [`Outputs`].
 ///
 /// # Panics
 /// On an error of [`conform_on`], and if validation says anything.

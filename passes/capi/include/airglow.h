@@ -168,6 +168,93 @@ typedef uint32_t AirglowBelowHorizon;
 #endif // __cplusplus
 
 /**
+ * The kind of phase function; its numbers come with a view.
+ */
+enum AirglowFogPhase
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Henyey and Greenstein's, of mean cosine g: `phase[0]`.
+   */
+  AIRGLOW_FOG_PHASE_HENYEY_GREENSTEIN = 0,
+  /**
+   * Alike in all directions.
+   */
+  AIRGLOW_FOG_PHASE_ISOTROPIC = 1,
+  /**
+   * The sum of `phase[k]` times the kth power of the cosine; the weights hold the 1 / (4 pi).
+   */
+  AIRGLOW_FOG_PHASE_POLYNOMIAL = 2,
+  /**
+   * Draine's: g is `phase[0]`, alpha `phase[1]`.
+   */
+  AIRGLOW_FOG_PHASE_DRAINE = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowFogPhase AirglowFogPhase;
+#else
+typedef uint32_t AirglowFogPhase;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * How exactly the airlight is computed.
+ */
+enum AirglowFogPreset
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * 6 points of quadrature a light and pixel.
+   */
+  AIRGLOW_FOG_PRESET_DEFAULT = 0,
+  /**
+   * 16 points of quadrature a light and pixel.
+   */
+  AIRGLOW_FOG_PRESET_REFERENCE = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowFogPreset AirglowFogPreset;
+#else
+typedef uint32_t AirglowFogPreset;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What the pass uses; all are images of the host's.
+ */
+enum AirglowFogResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Scene-linear radiance of the surfaces without the medium, any float format.
+   */
+  AIRGLOW_FOG_RESOURCE_SURFACE = 0,
+  /**
+   * Their depth, by the host's `AirglowWorld`; the farthest value shows no surface.
+   */
+  AIRGLOW_FOG_RESOURCE_DEPTH = 1,
+  /**
+   * The picture through the medium, in the format of the settings; all of it is written.
+   */
+  AIRGLOW_FOG_RESOURCE_TARGET = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowFogResource AirglowFogResource;
+#else
+typedef uint32_t AirglowFogResource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * The light of a frame.
  */
 enum AirglowLight
@@ -533,6 +620,16 @@ typedef uint32_t AirglowStorage;
  * and `airglow_context_drop` are to be called while no other call uses it.
  */
 typedef struct AirglowContext AirglowContext;
+
+/**
+ * The fog pass: its kernels for one context and one choice of settings. Any thread may use it.
+ */
+typedef struct AirglowFog AirglowFog;
+
+/**
+ * A view of the pass, ready to be recorded, in as many frames as wanted. One thread at a time.
+ */
+typedef struct AirglowFogPrepared AirglowFogPrepared;
 
 /**
  * A frame of the pass, ready to be recorded, and again in later frames while meshes, light and sizes stay. One thread
@@ -977,42 +1074,39 @@ typedef struct AirglowPassReached {
 } AirglowPassReached;
 
 /**
- * What the pass is prepared for. Zero is the default of every field.
+ * What fog is prepared for. Zero is the default of every field.
  */
-typedef struct AirglowRelightSettings {
+typedef struct AirglowFogSettings {
   /**
-   * `sizeof(AirglowRelightSettings)`.
+   * `sizeof(AirglowFogSettings)`.
    */
   uint32_t struct_size;
   /**
-   * Bands of every vector, 1 to 6; order^2 coefficients. 0 is 4.
+   * `VkFormat` of the picture that is written; 0 is `VK_FORMAT_R32G32B32A32_SFLOAT`.
    */
-  uint32_t order;
+  uint32_t format;
   /**
-   * An `AirglowStorage`.
+   * An `AirglowFogPreset`.
    */
-  uint32_t storage;
+  uint32_t preset;
   /**
-   * An `AirglowOutput`.
+   * An `AirglowFogPhase`.
    */
-  uint32_t output;
+  uint32_t phase;
   /**
-   * An `AirglowMethod`.
+   * 1: a medium may thin with height.
    */
-  uint32_t method;
+  uint32_t height;
   /**
-   * An `AirglowLightKind`.
+   * Not used; 0.
    */
-  uint32_t light;
+  uint32_t reserved;
   /**
-   * 1: instances may bring a dynamic visibility vector for each vertex.
+   * Radiance, W/sr/m2, below which the airlight of one light is left out of a pixel; 0 is 1e-4, below 0 nothing is left
+   * out.
    */
-  uint32_t visibility;
-  /**
-   * 1: instances of meshes without vectors may bring the normals of their vertices, for colours.
-   */
-  uint32_t normals;
-} AirglowRelightSettings;
+  double bound;
+} AirglowFogSettings;
 
 /**
  * A host's conventions: axes, units, winding, depth, exposure. All zero is airglow's own: metres, right-handed, +Y up,
@@ -1087,15 +1181,142 @@ typedef struct AirglowWorld {
 } AirglowWorld;
 
 /**
+ * A point light or spot light, in the host's axes and units. Elements of arrays never grow.
+ */
+typedef struct AirglowFogLight {
+  /**
+   * Where it is.
+   */
+  double position[3];
+  /**
+   * Radiant intensity, W/sr, of red, green and blue.
+   */
+  double intensity[3];
+  /**
+   * Factor on what the medium scatters of it; 0 is 1.
+   */
+  double scatter;
+  /**
+   * Radius; 0 is a point.
+   */
+  double radius;
+  /**
+   * Axis of a spot light, away from it.
+   */
+  double cone_direction[3];
+  /**
+   * Half angle of full intensity, radians.
+   */
+  double cone_inner;
+  /**
+   * Half angle from which on nothing arrives, radians; 0: no spot light.
+   */
+  double cone_outer;
+  /**
+   * Distance from which on nothing arrives; 0: none.
+   */
+  double range;
+  /**
+   * Lowest coordinates of the box in which it shines.
+   */
+  double bounds_low[3];
+  /**
+   * Highest coordinates of that box; where both are all zero there is none.
+   */
+  double bounds_high[3];
+} AirglowFogLight;
+
+/**
+ * A view through a medium: all that may change while a prepared view stays.
+ */
+typedef struct AirglowFogView {
+  /**
+   * `sizeof(AirglowFogView)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * The host's conventions; null is airglow's own.
+   */
+  const struct AirglowWorld *world;
+  /**
+   * The eye, in the host's axes and units.
+   */
+  double eye[3];
+  /**
+   * Unit vector to the right of the picture.
+   */
+  double right[3];
+  /**
+   * Unit vector up the picture.
+   */
+  double up[3];
+  /**
+   * Unit vector into the picture.
+   */
+  double forward[3];
+  /**
+   * Left, right, lower and upper edge of the picture at distance 1: tangents of the angles from `forward`; of an
+   * orthographic view the edges themselves.
+   */
+  double edges[4];
+  /**
+   * Extinction coefficient of the medium, 1/m, of red, green and blue. All zero: the pass is left out.
+   */
+  double extinction[3];
+  /**
+   * What of the extinction is scattering, 0 to 1 each.
+   */
+  double albedo[3];
+  /**
+   * Numbers of the phase function: see `AirglowFogPhase`.
+   */
+  double phase[4];
+  /**
+   * Where a medium that thins with height is as dense as it says, metres up.
+   */
+  double thinning_level;
+  /**
+   * Metres up in which it thins by a factor of e; 0: it does not.
+   */
+  double scale_height;
+  /**
+   * Lights inside the medium, at most 64.
+   */
+  const struct AirglowFogLight *lights;
+  /**
+   * How many.
+   */
+  size_t light_count;
+} AirglowFogView;
+
+/**
+ * Lights of a view.
+ */
+typedef struct AirglowFogCounts {
+  /**
+   * Those whose airlight passes the bound somewhere in the picture.
+   */
+  uint32_t evaluated;
+  /**
+   * Those left out: dark, too weak, or out of reach of every pixel.
+   */
+  uint32_t left_out;
+} AirglowFogCounts;
+
+/**
  * One use of one resource by one step. Elements of arrays never grow; names live as long as the prepared frame.
  */
 typedef struct AirglowAccess {
   /**
-   * An `AirglowResource`.
+   * An `AirglowResource`, in fog an `AirglowFogResource`.
    */
   uint32_t resource;
   /**
-   * See `AirglowResource`.
+   * See there.
    */
   uint32_t index;
   /**
@@ -1131,6 +1352,94 @@ typedef struct AirglowAccess {
    */
   const char *step_name;
 } AirglowAccess;
+
+/**
+ * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
+ */
+typedef struct AirglowBinding {
+  /**
+   * An `AirglowResource`, in fog an `AirglowFogResource`.
+   */
+  uint32_t resource;
+  /**
+   * See there.
+   */
+  uint32_t index;
+  /**
+   * The `VkBuffer`, or 0 for an image.
+   */
+  uint64_t buffer;
+  /**
+   * First byte of the resource in the buffer.
+   */
+  uint64_t offset;
+  /**
+   * Bytes of the whole buffer.
+   */
+  uint64_t size;
+  /**
+   * The `VkImage`, 2D with one sample, or 0 for a buffer.
+   */
+  uint64_t image;
+  /**
+   * `VkFormat` of the image.
+   */
+  uint32_t format;
+  /**
+   * `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
+   */
+  uint32_t usage;
+  /**
+   * Width and height of the image.
+   */
+  uint32_t extent[2];
+  /**
+   * Mips of the image; 0 is 1.
+   */
+  uint32_t mips;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+} AirglowBinding;
+
+/**
+ * What the pass is prepared for. Zero is the default of every field.
+ */
+typedef struct AirglowRelightSettings {
+  /**
+   * `sizeof(AirglowRelightSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Bands of every vector, 1 to 6; order^2 coefficients. 0 is 4.
+   */
+  uint32_t order;
+  /**
+   * An `AirglowStorage`.
+   */
+  uint32_t storage;
+  /**
+   * An `AirglowOutput`.
+   */
+  uint32_t output;
+  /**
+   * An `AirglowMethod`.
+   */
+  uint32_t method;
+  /**
+   * An `AirglowLightKind`.
+   */
+  uint32_t light;
+  /**
+   * 1: instances may bring a dynamic visibility vector for each vertex.
+   */
+  uint32_t visibility;
+  /**
+   * 1: instances of meshes without vectors may bring the normals of their vertices, for colours.
+   */
+  uint32_t normals;
+} AirglowRelightSettings;
 
 /**
  * One resource of a frame. Elements of arrays never grow; names live as long as the prepared frame.
@@ -1256,56 +1565,6 @@ typedef struct AirglowRelightFrame {
    */
   uint64_t environment_revision;
 } AirglowRelightFrame;
-
-/**
- * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
- */
-typedef struct AirglowBinding {
-  /**
-   * An `AirglowResource`.
-   */
-  uint32_t resource;
-  /**
-   * See `AirglowResource`.
-   */
-  uint32_t index;
-  /**
-   * The `VkBuffer`, or 0 for an image.
-   */
-  uint64_t buffer;
-  /**
-   * First byte of the resource in the buffer.
-   */
-  uint64_t offset;
-  /**
-   * Bytes of the whole buffer.
-   */
-  uint64_t size;
-  /**
-   * The `VkImage`, 2D with one sample, or 0 for a buffer.
-   */
-  uint64_t image;
-  /**
-   * `VkFormat` of the image.
-   */
-  uint32_t format;
-  /**
-   * `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
-   */
-  uint32_t usage;
-  /**
-   * Width and height of the image.
-   */
-  uint32_t extent[2];
-  /**
-   * Mips of the image; 0 is 1.
-   */
-  uint32_t mips;
-  /**
-   * Not used; 0.
-   */
-  uint32_t reserved;
-} AirglowBinding;
 
 /**
  * Bytes that the settings take, before anything is made; a prepared frame says its own
@@ -1487,6 +1746,125 @@ AirglowStatus airglow_context_last_pass_reached(const struct AirglowContext *con
  * finished all work recorded through them.
  */
 void airglow_context_drop(struct AirglowContext *context);
+
+/**
+ * Adds what the pass asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_fog_require(struct AirglowRequirements *requirements,
+                                  const struct AirglowFogSettings *settings,
+                                  struct AirglowError *error);
+
+/**
+ * Makes the pass: its kernels.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `fog` may be written.
+ */
+AirglowStatus airglow_fog_new(const struct AirglowContext *context,
+                              const struct AirglowFogSettings *settings,
+                              struct AirglowFog **fog,
+                              struct AirglowError *error);
+
+/**
+ * Drops the pass; views that were prepared stay usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_fog_drop(struct AirglowFog *fog);
+
+/**
+ * Writes the plan that the library's graph makes of a view of `width * height` pixels: what it uses, its barriers, and
+ * what was left out, why, and what would bring it back. The host's images are handed over as their use wants them; depth
+ * is of 32 bits. The format is an `AirglowPlanFormat`.
+ *
+ * The caller promises:
+ * `view` as with `airglow_fog_prepare`; `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_fog_plan(const struct AirglowFog *fog,
+                               uint32_t width,
+                               uint32_t height,
+                               const struct AirglowFogView *view,
+                               uint32_t format,
+                               struct AirglowText *text,
+                               struct AirglowError *error);
+
+/**
+ * Prepares a view of `width * height` pixels. `*prepared` gets null where the medium is clear: then there is nothing to
+ * record, and the surface is the picture.
+ *
+ * The caller promises:
+ * `view` points at as many bytes as it says, and so does its world; its lights are as many as it says; `prepared` may be
+ * written.
+ */
+AirglowStatus airglow_fog_prepare(const struct AirglowFog *fog,
+                                  uint32_t width,
+                                  uint32_t height,
+                                  const struct AirglowFogView *view,
+                                  struct AirglowFogPrepared **prepared,
+                                  struct AirglowError *error);
+
+/**
+ * Sets camera, medium and lights of a prepared view, which count from the next recording on; lamps that come and go
+ * allocate nothing once there were as many. A clear medium is refused: leave the pass out, or prepare anew. On an error
+ * the view stays. `counts` may be null.
+ *
+ * The caller promises:
+ * As `airglow_fog_prepare`; `counts` is null or may be written.
+ */
+AirglowStatus airglow_fog_set(const struct AirglowFogPrepared *prepared,
+                              const struct AirglowFogView *view,
+                              struct AirglowFogCounts *counts,
+                              struct AirglowError *error);
+
+/**
+ * Lists the uses of the host's images: one step, which reads surface and depth and writes the target. The host brings
+ * each into that layout before, and waits for that use after. `*count` as with `airglow_prepared_accesses`.
+ *
+ * The caller promises:
+ * `accesses` is null or has room for `*count` elements.
+ */
+AirglowStatus airglow_fog_accesses(const struct AirglowFogPrepared *prepared,
+                                   struct AirglowAccess *accesses,
+                                   size_t *count,
+                                   struct AirglowError *error);
+
+/**
+ * Records the pass into a command buffer of the host's: one rendering, without a barrier. Bound are the three resources.
+ * State of the command buffer that is changed: pipeline, descriptor set 0, vertex buffer 0, viewport 0 and scissor 0 of
+ * graphics. Rendering and labels are closed again.
+ *
+ * The last few sets of bindings are kept: recorded again with one of them, a view allocates nothing on the heap. Images
+ * that were bound stay until `airglow_fog_forget` or until the prepared view is dropped.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`: the command buffer records outside rendering, bindings describe live images truly, and
+ * these are in the layouts listed.
+ */
+AirglowStatus airglow_fog_record(const struct AirglowFogPrepared *prepared,
+                                 uint64_t command_buffer,
+                                 const struct AirglowBinding *bindings,
+                                 size_t binding_count,
+                                 struct AirglowError *error);
+
+/**
+ * Forgets the images that the view was recorded with: before the host destroys one of them.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_fog_forget(const struct AirglowFogPrepared *prepared, struct AirglowError *error);
+
+/**
+ * Drops a prepared view. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_fog_prepared_drop(struct AirglowFogPrepared *prepared);
 
 /**
  * Adds what the pass asks of a device with these settings.

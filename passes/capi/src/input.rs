@@ -1,4 +1,5 @@
 //! What can be checked of the caller's memory: null, alignment, sizes, UTF-8, and the versions of structures.
+#![allow(dead_code, reason = "helpers of passes, of which there may be none")]
 
 use std::ffi::{CStr, c_char};
 use std::ptr;
@@ -135,6 +136,12 @@ fn check_count<T>(count: usize, name: &str) -> Result<(), Failure> {
         Some(bytes) if isize::try_from(bytes).is_ok() => Ok(()),
         _ => Err(Failure::argument(name, &format!("no memory holds {count} of its elements"))),
     }
+}
+
+/// The value that a number of the caller stands for, counted from 0.
+pub(crate) fn one_of<T: Copy>(name: &str, value: u32, values: &[T]) -> Result<T, Failure> {
+    let problem = || format!("it is {value}: give 0 to {}", values.len().saturating_sub(1));
+    values.get(value as usize).copied().ok_or_else(|| Failure::argument(name, &problem()))
 }
 
 /// A text of the caller; null is `default`.

@@ -5,14 +5,19 @@
 //! went wrong in the caller's [`AirglowError`](status::AirglowError).
 #![deny(clippy::missing_safety_doc, clippy::undocumented_unsafe_blocks)]
 
+pub mod access;
 pub mod allocator;
 pub mod bake;
+pub mod binding;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 pub mod context;
+#[cfg(feature = "fog")]
+pub mod fog;
 mod input;
 pub mod needs;
 pub mod physical;
+pub mod plan;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod requirements;

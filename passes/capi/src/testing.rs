@@ -1,11 +1,14 @@
 //! What tests of the exported functions share.
 
+use airglow_gpu::Requirements;
 use airglow_tests::conformance::HostDevice;
 use airglow_tests::device::{open, stated};
-
-use airglow_gpu::Requirements;
+use airglow_tests::heap::Counting;
 
 use crate::text::AirglowText;
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
 
 /// Calls a function with an error at its end, and fails the test with the message.
 macro_rules! call {

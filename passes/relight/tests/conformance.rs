@@ -13,7 +13,7 @@ use airglow_relight::{
     Settings,
 };
 use airglow_tests::compare::assert_close;
-use airglow_tests::conformance::{Content, Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::conformance::{Given, HostResource, Named, Refusal, Room, conform};
 use glam::DQuat;
 use host::Numbers;
 use std::process::Command;
@@ -55,29 +55,17 @@ impl Room for Relit {
     }
 
     fn resources(&self) -> Vec<HostResource> {
-        let usage = ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST;
+        let usage = ImageUsageFlags::SAMPLED;
         let sky = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
         let texels = Numbers::new(4).rgb((WIDTH * HEIGHT) as usize);
         let texels = texels.into_iter().flat_map(|[r, g, b]| [r + 1.0, g + 1.0, b + 1.0, 1.0]);
         let texels = texels.flat_map(f32::to_le_bytes).collect();
-        let usage = BufferUsageFlags::STORAGE_BUFFER
-            | BufferUsageFlags::VERTEX_BUFFER
-            | BufferUsageFlags::TRANSFER_SRC
-            | BufferUsageFlags::TRANSFER_DST;
-        let results = BufferDesc { size: 16 * u64::from(VERTICES), usage };
+        let (usage, bytes) =
+            (BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::VERTEX_BUFFER, 16 * u64::from(VERTICES));
+        let colours = [Access::ComputeStorageReadWrite, Access::VertexBuffer];
         vec![
-            HostResource {
-                name: "sky",
-                content: Content::Image(sky, texels),
-                entry: Access::FragmentSampled.into(),
-                exit: Access::FragmentSampled.into(),
-            },
-            HostResource {
-                name: "vertex colours",
-                content: Content::Buffer(results, vec![0xff; 16 * VERTICES as usize]),
-                entry: Access::ComputeStorageReadWrite.into(),
-                exit: Access::VertexBuffer.into(),
-            },
+            HostResource::image("sky", sky, texels, [Access::FragmentSampled; 2]),
+            HostResource::results("vertex colours", bytes, usage, colours),
         ]
     }
 

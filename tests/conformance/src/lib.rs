@@ -44,6 +44,27 @@ pub struct HostResource {
     pub exit: State,
 }
 
+impl HostResource {
+    /// An image with its texels, tightly packed.
+    pub fn image(name: &'static str, desc: ImageDesc, texels: Vec<u8>, [entry, exit]: [Access; 2]) -> Self {
+        let desc = ImageDesc { usage: desc.usage | vk::ImageUsageFlags::TRANSFER_DST, ..desc };
+        let content = Content::Image(desc, texels);
+        Self { name, content, entry: entry.into(), exit: exit.into() }
+    }
+
+    /// A buffer of `size` bytes, each 0xff, which the kit hands back.
+    pub fn results(
+        name: &'static str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+        [entry, exit]: [Access; 2],
+    ) -> Self {
+        let copied = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
+        let content = Content::Buffer(BufferDesc { size, usage: usage | copied }, vec![0xff; size as usize]);
+        Self { name, content, entry: entry.into(), exit: exit.into() }
+    }
+}
+
 /// A host's resource in a graph.
 #[derive(Clone, Copy)]
 pub enum Named {
@@ -105,11 +126,11 @@ pub enum Road {
     Record,
 }
 
-/// Bytes that the host's buffers hold after the room, in order; images are skipped.
+/// Bytes that the host's buffers hold after the room, and its images that can be copied from, in order.
 pub type Outputs = Vec<Vec<u8>>;
 
-/// Runs a room made by `make` on the host's device by both roads, checks what a host relies on, and returns the bytes of
-/// its buffers. The device is idle afterwards; after an error, objects of it may be left.
+/// Runs a room made by `make` on the host's device by both roads, checks what a host relies on, and returns the
+/// [`Outputs`]. The device is idle afterwards; after an error, objects of it may be left.
 ///
 /// # Safety
 /// `host` states a live device truly; no one else uses its queue meanwhile.
@@ -133,13 +154,13 @@ pub unsafe fn conform_on<R: Room>(
     let (by_graph, by_record) = (run(Road::Graph)?, run(Road::Record)?);
     for (index, (by_graph, by_record)) in by_graph.iter().zip(&by_record).enumerate() {
         if let Some(byte) = by_graph.iter().zip(by_record).position(|(a, b)| a != b) {
-            return Err(format!("buffer {index}: the roads differ from byte {byte} on").into());
+            return Err(format!("resource {index}: the roads differ from byte {byte} on").into());
         }
     }
     let sizes = |outputs: &Outputs| outputs.iter().map(Vec::len).collect::<Vec<_>>();
     match sizes(&by_graph) == sizes(&by_record) {
         true => Ok(by_graph),
-        false => Err("the roads give buffers of other sizes".into()),
+        false => Err("the roads give resources of other sizes".into()),
     }
 }
 

@@ -117,9 +117,17 @@ pub(super) fn read_back(
 ) -> Result<Vec<Readback>, GpuError> {
     let mut copies = Vec::new();
     for (resource, given) in resources.iter().zip(given) {
-        let Given::Buffer(buffer) = given else { continue };
-        hand_over(recorder, given, resource.exit, Access::TransferSource.into())?;
-        copies.push(recorder.read_back_buffer(buffer)?);
+        match given {
+            Given::Image(image) if !image.desc().usage.contains(vk::ImageUsageFlags::TRANSFER_SRC) => {}
+            Given::Image(image) => {
+                hand_over(recorder, given, resource.exit, Access::TransferSource.into())?;
+                copies.push(recorder.read_back_image(&image.full_view()?)?);
+            }
+            Given::Buffer(buffer) => {
+                hand_over(recorder, given, resource.exit, Access::TransferSource.into())?;
+                copies.push(recorder.read_back_buffer(buffer)?);
+            }
+        }
     }
     Ok(copies)
 }

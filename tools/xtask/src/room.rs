@@ -8,6 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::error::Error;
+use crate::room_lines::Place;
 use crate::{files, header, portability, room_lines, shaders};
 
 /// Where each file of a room lies, and its text. `__room__` stands for the room's name, `__Room__` for that of its type.
@@ -64,7 +65,12 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
     if !is_word(name) || !workspace.join("passes").join(name).join("Cargo.toml").is_file() {
         return Err(refuse("there is no such crate below passes/"));
     }
-    let mut edited = room_lines::edit(workspace, |file, text| Some(room_lines::remove(file, text, name)))?;
+    let spoken_of = room_lines::tool_speaks_of(workspace, name)?;
+    let remove = |place, text: &str| {
+        let text = room_lines::remove(place, text, name);
+        if place == Place::Workspace && spoken_of { room_lines::excuse(&text, name) } else { Some(text) }
+    };
+    let mut edited = room_lines::edit(workspace, remove)?;
     let of_capi = ["passes/capi/src", "passes/capi/tests", "passes/capi/examples"];
     for folder in ["passes", "shaders/glsl", "shaders/spirv"].into_iter().chain(of_capi) {
         let folder = workspace.join(folder).join(name);

@@ -1,9 +1,8 @@
-// What host.cpp lights: a dome and a ring on a plain, a sky with a low sun, and the picture of it.
+// What host.cpp lights: a dome and a ring on a plain, and a sky with a low sun.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <vector>
 
 // A height field over [-1, 1)^2 in x and z, side * side vertices row by row. The right-hand rule of its triangles and
@@ -43,18 +42,4 @@ inline std::vector<float> sky(int width, int height) {
         else texels.insert(texels.end(), {0.2f, 0.2f, 0.2f});
     }
     return texels;
-}
-
-// The colours of the vertices as a picture seen from above, one pixel a vertex: a PPM file in sRGB.
-inline bool write_picture(const char *path, uint32_t side, const float *colours) {
-    std::FILE *file = std::fopen(path, "wb");
-    if (!file) return false;
-    std::fprintf(file, "P6 %u %u 255\n", side, side);
-    for (uint32_t i = 0; i < side * side * 4; i++) {
-        if (i % 4 == 3) continue;  // the fourth value of a colour is 1
-        const float linear = std::clamp(colours[i], 0.f, 1.f);
-        const float srgb = linear < 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-        std::fputc(static_cast<int>(255 * srgb + 0.5f), file);
-    }
-    return std::fclose(file) == 0;
 }

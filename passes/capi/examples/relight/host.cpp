@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 #include "airglow.h"
 #include "field.hpp"
+#include "picture.hpp"
 #include "readable.hpp"
 
 static AirglowError error = {sizeof error, AIRGLOW_STATUS_OK, 0, 0, {}};
@@ -87,7 +88,7 @@ int main(int count, char **arguments) {
             vkCmdPipelineBarrier2(commands, &dependency);
         });
         const char *path = count > 1 ? arguments[1] : "relit.ppm";
-        if (!write_picture(path, side, static_cast<float *>(colours.data))) return std::perror(path), 1;
+        if (!write_picture(path, side, side, static_cast<float *>(colours.data))) return std::perror(path), 1;
     }
     airglow_prepared_drop(prepared), airglow_relight_drop(relight), airglow_context_drop(context);
     airglow_requirements_drop(requirements);

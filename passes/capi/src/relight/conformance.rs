@@ -4,23 +4,23 @@
 use std::mem::zeroed;
 use std::ptr;
 
-use airglow_conformance::{
-    Content, Given, HostDevice, HostResource, Named, Outputs, Refusal, Room, conform_on,
-};
+use airglow_conformance::{Given, HostDevice, HostResource, Named, Outputs, Refusal, Room, conform_on};
 use airglow_gpu::ash::vk::{BufferUsageFlags as Usage, Format, Handle, ImageUsageFlags};
 use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph::{Access, BufferDesc, Graph, ImageDesc};
+use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight, Settings};
 use glam::DQuat;
 
-use crate::conformance::{Checks, adopt, attempt};
+use crate::access::AirglowAccess;
+use crate::binding::AirglowBinding;
+use crate::conformance::{Checks, adopt, attempt, ends};
 use crate::context::{AirglowContext, airglow_context_drop};
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
-use crate::relight::lists::{AirglowAccess, airglow_prepared_accesses};
+use crate::relight::lists::airglow_prepared_accesses;
 use crate::relight::prepared::{
     AirglowPrepared, airglow_prepared_drop, airglow_prepared_make_scratch, airglow_relight_prepare,
 };
-use crate::relight::record::{AirglowBinding, airglow_prepared_record};
+use crate::relight::record::airglow_prepared_record;
 use crate::relight::resources::AirglowResource;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::relight::{
@@ -110,25 +110,17 @@ impl Room for Both {
     }
 
     fn resources(&self) -> Vec<HostResource> {
-        let usage = ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST;
-        let image = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
+        let desc = ImageDesc {
+            usage: ImageUsageFlags::SAMPLED,
+            ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT)
+        };
         let texels = sky().into_iter().flat_map(|[r, g, b]| [r, g, b, 1.0]);
         let texels = texels.flat_map(f32::to_le_bytes).collect();
-        let usage = Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER | Usage::TRANSFER_SRC | Usage::TRANSFER_DST;
-        let results = BufferDesc { size: 16 * u64::from(VERTICES), usage };
+        let (usage, bytes) = (Usage::STORAGE_BUFFER | Usage::VERTEX_BUFFER, 16 * u64::from(VERTICES));
+        let colours = [Access::ComputeStorageReadWrite, Access::VertexBuffer];
         vec![
-            HostResource {
-                name: "sky",
-                content: Content::Image(image, texels),
-                entry: Access::FragmentSampled.into(),
-                exit: Access::FragmentSampled.into(),
-            },
-            HostResource {
-                name: "vertex colours",
-                content: Content::Buffer(results, vec![0xff; 16 * VERTICES as usize]),
-                entry: Access::ComputeStorageReadWrite.into(),
-                exit: Access::VertexBuffer.into(),
-            },
+            HostResource::image("sky", desc, texels, [Access::FragmentSampled; 2]),
+            HostResource::results("vertex colours", bytes, usage, colours),
         ]
     }
 
@@ -169,13 +161,8 @@ impl Room for Both {
         // SAFETY: zero bytes are a valid access.
         let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
         attempt!(airglow_prepared_accesses, self.prepared, uses.as_mut_ptr(), &raw mut count)?;
-        let ends = |resource: AirglowResource| -> Result<_, Refusal> {
-            let all = uses.iter().filter(|used| used.resource == resource as u32).map(known);
-            let all = all.collect::<Result<Vec<_>, _>>()?;
-            Ok(all.first().copied().zip(all.last().copied()))
-        };
-        let sky = ends(AirglowResource::Environment)?.filter(|_| !self.texels);
-        Ok(vec![sky, ends(AirglowResource::Results)?])
+        let sky = ends(&uses, AirglowResource::Environment as u32)?.filter(|_| !self.texels);
+        Ok(vec![sky, ends(&uses, AirglowResource::Results as u32)?])
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
@@ -205,17 +192,6 @@ impl Room for Both {
         attempt!(airglow_prepared_record, self.prepared, commands, bindings.as_ptr(), bindings.len())?;
         Ok(())
     }
-}
-
-/// The access of the table that has those numbers.
-fn known(used: &AirglowAccess) -> Result<Access, Refusal> {
-    let numbers = (used.stage, used.access, used.writes != 0);
-    let same = |access: &&Access| {
-        (access.stage().as_raw(), access.access().as_raw(), access.writes()) == numbers
-            && (used.layout == 0 || access.layout().as_raw() as u32 == used.layout)
-    };
-    let found = Access::ALL.iter().find(same).copied();
-    found.ok_or_else(|| format!("no use has stage {:#x} and access {:#x}", used.stage, used.access).into())
 }
 
 /// Settings that are all default but for the method.

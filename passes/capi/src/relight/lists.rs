@@ -7,47 +7,10 @@ use airglow_relight::{Need, Resource};
 
 use super::prepared::{AirglowPrepared, buffer_usage, uses};
 use super::resources::number;
+use crate::access::{AirglowAccess, AirglowOrigin};
 use crate::input::shared;
 use crate::status::{AirglowError, AirglowStatus, edge};
 use crate::text::write_array;
-
-/// Where a resource of a frame comes from.
-#[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AirglowOrigin {
-    /// The library keeps it and synchronises it.
-    Library = 0,
-    /// The host gives it, bound when the frame is recorded.
-    Host = 1,
-    /// It lives within the frame: bound by the host, or made by `airglow_prepared_make_scratch`.
-    Scratch = 2,
-}
-
-/// One use of one resource by one step. Elements of arrays never grow; names live as long as the prepared frame.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct AirglowAccess {
-    /// An `AirglowResource`.
-    pub resource: u32,
-    /// See `AirglowResource`.
-    pub index: u32,
-    /// An `AirglowOrigin`.
-    pub origin: u32,
-    /// The step, counted from 0 in the order of recording.
-    pub step: u32,
-    /// `VkPipelineStageFlags2`.
-    pub stage: u64,
-    /// `VkAccessFlags2`.
-    pub access: u64,
-    /// `VkImageLayout`; 0 for buffers.
-    pub layout: u32,
-    /// 1: the step writes it.
-    pub writes: u32,
-    /// Name of the resource.
-    pub name: *const c_char,
-    /// Name of the step.
-    pub step_name: *const c_char,
-}
 
 /// One resource of a frame. Elements of arrays never grow; names live as long as the prepared frame.
 #[repr(C)]

@@ -11,20 +11,9 @@ use super::AirglowRelight;
 use super::frame::{AirglowRelightFrame, read};
 use super::prepared::AirglowPrepared;
 use crate::input::{shared, versioned};
+use crate::plan::write_plan;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
-use crate::text::{AirglowText, write_text};
-
-/// How a plan is written.
-#[repr(u32)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AirglowPlanFormat {
-    /// Text made to be compared.
-    Text = 0,
-    /// JSON.
-    Json = 1,
-    /// A mermaid diagram.
-    Mermaid = 2,
-}
+use crate::text::AirglowText;
 
 /// Writes the plan that the library's graph makes of a frame: steps, barriers, lifetimes and bytes of what they use, and
 /// what was left out, why, and what would bring it back. The host's resources stand in it with the sizes needed, handed
@@ -41,19 +30,11 @@ pub unsafe extern "C" fn airglow_relight_plan(
     text: *mut AirglowText,
     error: *mut AirglowError,
 ) -> AirglowStatus {
-    const JSON: u32 = AirglowPlanFormat::Json as u32;
-    const MERMAID: u32 = AirglowPlanFormat::Mermaid as u32;
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
             let plan = plan(shared(relight, "relight")?, &versioned(frame, "frame")?)?;
-            let written = match format {
-                0 => plan.text(),
-                JSON => plan.json().map_err(|error| Failure::argument("the plan", &error.to_string()))?,
-                MERMAID => plan.mermaid(),
-                _ => return Err(Failure::argument("format", "give an AirglowPlanFormat")),
-            };
-            write_text(text, &written)
+            write_plan(&plan, format, text)
         })
     }
 }

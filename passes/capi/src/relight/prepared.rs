@@ -9,9 +9,9 @@ use airglow_graph::{BufferDesc, ImageDesc, ResourceDesc};
 use airglow_relight::{Bindings, Need, Orientation, Prepared, Resource, Settings};
 
 use super::frame::{AirglowRelightFrame, AirglowRelightInstance, orientation, quaternion, read};
-use super::record::Kept;
 use super::sky::Sky;
 use super::{AirglowRelight, misuse};
+use crate::binding::Kept;
 use crate::input::{array, exclusive, shared, store, take, versioned};
 use crate::status::{AirglowError, AirglowStatus, edge};
 
@@ -26,7 +26,7 @@ pub struct AirglowPrepared {
     /// What the library made for the frame.
     pub(super) scratch: Bindings,
     /// What it was recorded with.
-    pub(super) kept: Mutex<Kept>,
+    pub(super) kept: Mutex<Kept<Bindings>>,
     /// Names that the host was given pointers to, by resource and by stage.
     pub(super) names: Names,
 }
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn airglow_prepared_make_scratch(
                 }
             }
             frame.scratch = made;
-            frame.kept().sets.clear();
+            frame.kept().forget();
             Ok(())
         })
     }

@@ -2,44 +2,16 @@
 
 use std::sync::{MutexGuard, PoisonError};
 
+use airglow_gpu::Recorder;
 use airglow_gpu::ash::{vk, vk::Handle};
-use airglow_gpu::{Label, Recorder};
-use airglow_graph::{BufferDesc, ImageDesc};
 use airglow_relight::{Bindings, Need, Resource};
 
 use super::misuse;
 use super::prepared::AirglowPrepared;
 use super::resources::number;
+use crate::binding::{AirglowBinding, Imported, Kept};
 use crate::input::{array, shared};
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
-
-/// A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
-#[repr(C)]
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct AirglowBinding {
-    /// An `AirglowResource`.
-    pub resource: u32,
-    /// See `AirglowResource`.
-    pub index: u32,
-    /// The `VkBuffer`, or 0 for an image.
-    pub buffer: u64,
-    /// First byte of the resource in the buffer.
-    pub offset: u64,
-    /// Bytes of the whole buffer.
-    pub size: u64,
-    /// The `VkImage`, 2D with one sample, or 0 for a buffer.
-    pub image: u64,
-    /// `VkFormat` of the image.
-    pub format: u32,
-    /// `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
-    pub usage: u32,
-    /// Width and height of the image.
-    pub extent: [u32; 2],
-    /// Mips of the image; 0 is 1.
-    pub mips: u32,
-    /// Not used; 0.
-    pub reserved: u32,
-}
 
 /// Records a frame into a command buffer of the host's: its steps, with barriers between them and none around them
 /// (`airglow_prepared_accesses`). Bound are the host's resources, and the scratch unless
@@ -94,45 +66,14 @@ pub unsafe extern "C" fn airglow_prepared_forget(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            shared(prepared, "prepared")?.kept().sets.clear();
+            shared(prepared, "prepared")?.kept().forget();
             Ok(())
         })
     }
 }
 
-/// Sets of bindings that are kept: as many as a host has frames in flight, and some.
-const MOST_KEPT: usize = 8;
-
-/// What a frame was recorded with, the last set at the end.
-#[derive(Default)]
-pub(super) struct Kept {
-    pub sets: Vec<(Vec<AirglowBinding>, Bindings)>,
-}
-
-impl Kept {
-    /// The set for `given`, made by `import` where it is not here.
-    fn set(
-        &mut self,
-        given: &[AirglowBinding],
-        import: impl FnOnce() -> Result<Bindings, Failure>,
-    ) -> Result<&mut Bindings, Failure> {
-        match self.sets.iter().position(|(known, _)| known == given) {
-            Some(place) => self.sets[place..].rotate_left(1),
-            None => {
-                let bound = import()?;
-                if self.sets.len() == MOST_KEPT {
-                    self.sets.remove(0);
-                }
-                self.sets.push((given.to_vec(), bound));
-            }
-        }
-        let problem = "no set of bindings is kept";
-        self.sets.last_mut().map(|(_, bound)| bound).ok_or_else(|| Failure::argument("bindings", problem))
-    }
-}
-
 impl AirglowPrepared {
-    pub(super) fn kept(&self) -> MutexGuard<'_, Kept> {
+    pub(super) fn kept(&self) -> MutexGuard<'_, Kept<Bindings>> {
         // A poisoned lock means a panic that was reported as a defect; the data is whole.
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -146,30 +87,10 @@ impl AirglowPrepared {
         for binding in given {
             let resource = self.wanted(binding)?;
             let name = resource.to_string();
-            let label = Label::new("host", &name);
-            match (binding.buffer, binding.image) {
-                (0, image) if image != 0 => {
-                    let [width, height] = binding.extent;
-                    let desc = ImageDesc {
-                        usage: vk::ImageUsageFlags::from_raw(binding.usage),
-                        mips: binding.mips.max(1),
-                        ..ImageDesc::new_2d(width, height, vk::Format::from_raw(binding.format as i32))
-                    };
-                    // SAFETY: the caller vouches for the image.
-                    let image =
-                        unsafe { self.context.import_image(vk::Image::from_raw(image), label, &desc) };
-                    bound.images.insert(resource, image.view(airglow_gpu::ViewDesc::single(0, 0))?);
-                }
-                (buffer, 0) if buffer != 0 => {
-                    let usage = vk::BufferUsageFlags::from_raw(binding.usage);
-                    let desc = BufferDesc { size: binding.size, usage };
-                    // SAFETY: the caller vouches for the buffer.
-                    let buffer =
-                        unsafe { self.context.import_buffer(vk::Buffer::from_raw(buffer), label, &desc) };
-                    let rest = binding.size.saturating_sub(binding.offset);
-                    bound.buffers.insert(resource, buffer.slice(binding.offset, rest)?);
-                }
-                _ => return Err(misuse(name, "give a buffer or an image, not both or none")),
+            // SAFETY: the caller vouches for what the binding says.
+            match unsafe { binding.import(&self.context, &name)? } {
+                Imported::Image(view) => drop(bound.images.insert(resource, view)),
+                Imported::Buffer(slice) => drop(bound.buffers.insert(resource, slice)),
             }
         }
         Ok(bound)

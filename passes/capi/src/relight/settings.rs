@@ -3,7 +3,7 @@
 use airglow_gpu::ash::vk;
 use airglow_relight::{LightKind, Method, Output, Settings, Storage};
 
-use crate::input::{Versioned, store, versioned};
+use crate::input::{Versioned, one_of, store, versioned};
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 
 /// How the vectors of a mesh are stored on the device.
@@ -78,22 +78,17 @@ impl AirglowRelightSettings {
     pub(crate) fn read(&self) -> Result<Settings, Failure> {
         let settings = Settings {
             order: if self.order == 0 { Settings::default().order } else { self.order as usize },
-            storage: either("storage", self.storage, [Storage::F32, Storage::F16])?,
-            output: either("output", self.output, [Output::Colour, Output::Incident])?,
-            method: either("method", self.method, [Method::Compute, Method::Fragment])?,
-            light: either("light", self.light, [LightKind::Uniform, LightKind::Vertex])?,
-            visibility: either("visibility", self.visibility, [false, true])?,
-            normals: either("normals", self.normals, [false, true])?,
+            storage: one_of("storage", self.storage, &[Storage::F32, Storage::F16])?,
+            output: one_of("output", self.output, &[Output::Colour, Output::Incident])?,
+            method: one_of("method", self.method, &[Method::Compute, Method::Fragment])?,
+            light: one_of("light", self.light, &[LightKind::Uniform, LightKind::Vertex])?,
+            visibility: one_of("visibility", self.visibility, &[false, true])?,
+            normals: one_of("normals", self.normals, &[false, true])?,
             ..Settings::default()
         };
         settings.check()?;
         Ok(settings)
     }
-}
-
-fn either<T: Copy>(name: &str, value: u32, values: [T; 2]) -> Result<T, Failure> {
-    let problem = || format!("it is {value}: give 0 or 1");
-    values.get(value as usize).copied().ok_or_else(|| Failure::argument(name, &problem()))
 }
 
 /// Bytes that the settings take, before anything is made; a prepared frame says its own

@@ -51,6 +51,25 @@ pub fn linked(folder: &Path, name: &str) -> [(&'static str, Vec<String>); 2] {
     ]
 }
 
+/// Builds a host in C++ with a library; the program.
+pub fn host(source: &Path, name: &str, libraries: &[String]) -> PathBuf {
+    let program = scratch().join(name);
+    let mut command = compiler("g++", "-std=c++17");
+    command.arg(format!("-I{ROOM}/examples/common")).args(["-O1", "-o"]).arg(&program).arg(source);
+    run(command.args(libraries).arg("-lvulkan"), VULKAN);
+    program
+}
+
+/// Runs a host under validation; its picture's bytes, three a pixel.
+pub fn picture(program: &Path, [width, height]: [usize; 2]) -> Vec<u8> {
+    let picture = program.with_extension("ppm");
+    run_validated(program, &picture);
+    let bytes = fs::read(picture).unwrap();
+    let header = format!("P6 {width} {height} 255\n");
+    assert!(bytes.starts_with(header.as_bytes()) && bytes.len() == header.len() + 3 * width * height);
+    bytes[header.len()..].to_vec()
+}
+
 /// Where files of the tests go.
 pub fn scratch() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capi");
@@ -103,3 +122,6 @@ pub fn assert_sizes(file: &str, sizes: &[(&str, usize, usize)]) {
 
 /// How to get a compiler.
 pub const COMPILER: &str = "install g++ (Debian: g++)";
+
+/// How to get what hosts are built with.
+pub const VULKAN: &str = "install g++ and Vulkan's headers (Debian: g++ libvulkan-dev)";

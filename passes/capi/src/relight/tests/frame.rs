@@ -7,10 +7,12 @@ use std::ptr::{null, null_mut};
 use airglow_gpu::ash::vk;
 
 use super::{adopt, call, refused, settings, text, with_host};
+use crate::access::AirglowOrigin;
 use crate::context::*;
+use crate::plan::AirglowPlanFormat;
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
 use crate::relight::lists::*;
-use crate::relight::plan::{AirglowPlanFormat, airglow_relight_plan};
+use crate::relight::plan::airglow_relight_plan;
 use crate::relight::prepared::*;
 use crate::relight::record::airglow_prepared_record;
 use crate::relight::resources::AirglowResource;

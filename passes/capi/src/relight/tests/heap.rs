@@ -9,18 +9,16 @@ use airglow_gpu::{Buffer, Label, Location};
 use airglow_graph::BufferDesc;
 use airglow_relight::Relight;
 use airglow_tests::device::{open, stated};
-use airglow_tests::heap::{Counting, allocations};
+use airglow_tests::heap::allocations;
 
 use super::{adopt, call, settings};
+use crate::binding::AirglowBinding;
 use crate::context::*;
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
 use crate::relight::prepared::*;
 use crate::relight::record::*;
 use crate::relight::resources::AirglowResource;
 use crate::relight::*;
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Warm-up, and frames that count.
 const FRAMES: [u64; 2] = [10, 30];

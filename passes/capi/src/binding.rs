@@ -1,0 +1,117 @@
+//! Resources of the host's that a pass is recorded with.
+#![allow(dead_code, reason = "helpers of passes, of which there may be none")]
+
+use airglow_gpu::ash::{vk, vk::Handle};
+use airglow_gpu::{BufferSlice, Context, GpuError, ImageView, Label, ViewDesc};
+use airglow_graph::{BufferDesc, ImageDesc};
+
+use crate::status::Failure;
+
+/// A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
+#[repr(C)]
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct AirglowBinding {
+    /// An `AirglowResource`, in fog an `AirglowFogResource`.
+    pub resource: u32,
+    /// See there.
+    pub index: u32,
+    /// The `VkBuffer`, or 0 for an image.
+    pub buffer: u64,
+    /// First byte of the resource in the buffer.
+    pub offset: u64,
+    /// Bytes of the whole buffer.
+    pub size: u64,
+    /// The `VkImage`, 2D with one sample, or 0 for a buffer.
+    pub image: u64,
+    /// `VkFormat` of the image.
+    pub format: u32,
+    /// `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
+    pub usage: u32,
+    /// Width and height of the image.
+    pub extent: [u32; 2],
+    /// Mips of the image; 0 is 1.
+    pub mips: u32,
+    /// Not used; 0.
+    pub reserved: u32,
+}
+
+/// What a binding stands for, in the library's hands.
+pub(crate) enum Imported {
+    /// The first mip of an image.
+    Image(ImageView),
+    /// A buffer from its offset on.
+    Buffer(BufferSlice),
+}
+
+impl AirglowBinding {
+    /// The resource, by its name in messages.
+    ///
+    /// # Safety
+    /// It describes a live resource of the context's device truly.
+    pub(crate) unsafe fn import(&self, context: &Context, name: &str) -> Result<Imported, Failure> {
+        let label = Label::new("host", name);
+        match (self.buffer, self.image) {
+            (0, image) if image != 0 => {
+                let [width, height] = self.extent;
+                let desc = ImageDesc {
+                    usage: vk::ImageUsageFlags::from_raw(self.usage),
+                    mips: self.mips.max(1),
+                    ..ImageDesc::new_2d(width, height, vk::Format::from_raw(self.format as i32))
+                };
+                // SAFETY: the caller vouches for the image.
+                let image = unsafe { context.import_image(vk::Image::from_raw(image), label, &desc) };
+                Ok(Imported::Image(image.view(ViewDesc::single(0, 0))?))
+            }
+            (buffer, 0) if buffer != 0 => {
+                let usage = vk::BufferUsageFlags::from_raw(self.usage);
+                let desc = BufferDesc { size: self.size, usage };
+                // SAFETY: the caller vouches for the buffer.
+                let buffer = unsafe { context.import_buffer(vk::Buffer::from_raw(buffer), label, &desc) };
+                let rest = self.size.saturating_sub(self.offset);
+                Ok(Imported::Buffer(buffer.slice(self.offset, rest)?))
+            }
+            _ => Err(GpuError::misuse(name, "give a buffer or an image, not both or none").into()),
+        }
+    }
+}
+
+/// Sets of bindings that are kept: as many as a host has frames in flight, and some.
+const MOST_KEPT: usize = 8;
+
+/// What a frame was recorded with, the last set at the end.
+pub(crate) struct Kept<B> {
+    sets: Vec<(Vec<AirglowBinding>, B)>,
+}
+
+impl<B> Default for Kept<B> {
+    fn default() -> Self {
+        Self { sets: Vec::new() }
+    }
+}
+
+impl<B> Kept<B> {
+    /// The set for `given`, made by `import` where it is not here.
+    pub(crate) fn set(
+        &mut self,
+        given: &[AirglowBinding],
+        import: impl FnOnce() -> Result<B, Failure>,
+    ) -> Result<&mut B, Failure> {
+        match self.sets.iter().position(|(known, _)| known == given) {
+            Some(place) => self.sets[place..].rotate_left(1),
+            None => {
+                let bound = import()?;
+                if self.sets.len() == MOST_KEPT {
+                    self.sets.remove(0);
+                }
+                self.sets.push((given.to_vec(), bound));
+            }
+        }
+        let problem = "no set of bindings is kept";
+        self.sets.last_mut().map(|(_, bound)| bound).ok_or_else(|| Failure::argument("bindings", problem))
+    }
+
+    /// Forgets all.
+    pub(crate) fn forget(&mut self) {
+        self.sets.clear();
+    }
+}

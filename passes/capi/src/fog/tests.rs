@@ -1,0 +1,120 @@
+//! The functions as a host calls them.
+
+use std::ptr::{null, null_mut};
+
+use airglow_fog::Fog;
+use airglow_gpu::ash::vk::{CommandBuffer, Handle};
+use airglow_gpu::open::{FrameLoop, FrameSemaphores};
+use airglow_gpu::{Image, Label, Options};
+use airglow_graph::State;
+use airglow_tests::conformance::conform_adopting;
+use airglow_tests::device::{open, stated};
+use airglow_tests::heap::allocations;
+
+use super::conformance::*;
+use super::plan::airglow_fog_plan;
+use super::prepared::*;
+use super::settings::AirglowFogSettings;
+use super::view::AirglowFogView;
+use super::*;
+use crate::plan::AirglowPlanFormat;
+use crate::testing::{call, refused, text, with_host};
+
+#[test]
+fn rust_and_c_give_the_same_bits_under_validation() {
+    let asked = Fog::requirements(&settings().read().unwrap());
+    check_lit(&conform_adopting(Both::new, &asked, &Options::default())).unwrap();
+}
+
+#[test]
+fn what_no_view_is_is_refused_and_changes_nothing() {
+    with_host(&Fog::requirements(&settings().read().unwrap()), |host| {
+        let mut made = ThroughC::new(host).unwrap();
+        let lamps = [lamp()];
+        let good = view_in_c(&lamps);
+        made.prepare(&good).unwrap();
+        let ThroughC { fog, prepared, .. } = made;
+        let mut other: *mut AirglowFogPrepared = null_mut();
+        let dark = [lamp(); 65];
+        let mut tilted = lamp();
+        (tilted.cone_direction, tilted.cone_outer) = ([0.0, -1.0, 0.0], 2.0);
+        let wrong = [
+            (AirglowFogView { forward: [0.0; 3], ..good }, "camera"),
+            (AirglowFogView { albedo: [2.0; 3], ..good }, "albedo"),
+            (AirglowFogView { phase: [1.0, 0.0, 0.0, 0.0], ..good }, "phase.g"),
+            (AirglowFogView { scale_height: 10.0, ..good }, "height"),
+            (AirglowFogView { light_count: 65, lights: dark.as_ptr(), ..good }, "65 lights"),
+            (AirglowFogView { lights: &raw const tilted, ..good }, "cone.outer"),
+            (AirglowFogView { lights: null(), ..good }, "view.lights"),
+        ];
+        for (view, word) in &wrong {
+            let said = refused!(InvalidArgument, airglow_fog_prepare, fog, 40, 24, view, &raw mut other);
+            assert!(said.contains(word) && other.is_null(), "{said}");
+            assert_eq!(refused!(InvalidArgument, airglow_fog_set, prepared, view, null_mut()), said);
+        }
+        let clear = AirglowFogView { extinction: [0.0; 3], ..good };
+        let said = refused!(InvalidArgument, airglow_fog_set, prepared, &raw const clear, null_mut());
+        assert!(said.contains("declare the frame anew"), "{said}");
+        other = prepared;
+        call!(airglow_fog_prepare, fog, 40, 24, &raw const clear, &raw mut other);
+        assert!(other.is_null(), "nothing is left to record");
+        let plan = |view: &AirglowFogView| {
+            let format = AirglowPlanFormat::Text as u32;
+            text(|text| call!(airglow_fog_plan, fog, 40, 24, &raw const *view, format, text))
+        };
+        assert!(plan(&clear).contains("the medium has no extinction"), "{}", plan(&clear));
+        assert!(plan(&good).contains("fog airlight"), "{}", plan(&good));
+        let chosen = AirglowFogSettings { preset: 2, ..settings() };
+        let mut none = null_mut();
+        let said =
+            refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
+        assert!(said.contains("give 0 to 1"), "{said}");
+        refused!(InvalidArgument, airglow_fog_record, prepared, 0, null(), 0);
+    });
+}
+
+#[test]
+fn a_lamp_that_enters_allocates_nothing() {
+    const WARM_UP: u32 = 10;
+    let open = open(&Fog::requirements(&settings().read().unwrap()));
+    let mut made = ThroughC::new(&stated(&open, open.device())).unwrap();
+    // SAFETY: dropped below, when the device is idle.
+    let host = unsafe { open.adopt(1) }.unwrap();
+    let images: [Image; 3] =
+        images().map(|desc| host.create_image(Label::new("host", "image"), &desc).unwrap());
+    let lamps = [lamp(); 2];
+    let views = [view_in_c(&lamps), view_in_c(&lamps[..1]), view_in_c(&[])];
+    made.prepare(&views[0]).unwrap();
+    let bindings = [AirglowFogResource::Surface, AirglowFogResource::Depth, AirglowFogResource::Target];
+    let bindings = bindings.map(|resource| binding(resource, &images[resource as usize]));
+    let mut frames = FrameLoop::new(&open, &host).unwrap();
+    let mut counted = 0;
+    for frame in 0..4 * WARM_UP {
+        let recorded = frames.frame(FrameSemaphores::default(), |commands: CommandBuffer| {
+            if frame == 0 {
+                // SAFETY: the loop's command buffer is recording.
+                let mut recorder = unsafe { airglow_gpu::Recorder::new(&host, commands) };
+                for (image, (_, access)) in images.iter().zip(airglow_fog::ACCESSES) {
+                    recorder.transition(image, State::UNDEFINED, access)?;
+                }
+            }
+            if frame > 0 {
+                call!(crate::context::airglow_context_begin_frame, made.context, u64::from(frame));
+            }
+            let mut counts = AirglowFogCounts { evaluated: 9, left_out: 9 };
+            let (view, before) = (&raw const views[frame as usize % 3], allocations());
+            call!(airglow_fog_set, made.prepared, view, &raw mut counts);
+            call!(airglow_fog_record, made.prepared, commands.as_raw(), bindings.as_ptr(), bindings.len());
+            counted += if frame < WARM_UP { 0 } else { allocations() - before };
+            assert_eq!((counts.evaluated, counts.left_out), (2 - frame % 3, 0));
+            Ok::<_, airglow_gpu::GpuError>(())
+        });
+        recorded.unwrap();
+    }
+    frames.finish().unwrap();
+    drop(frames);
+    call!(airglow_fog_forget, made.prepared);
+    assert_eq!(counted, 0, "allocations after warm-up");
+    drop((made, images, host));
+    assert!(open.messages().take().is_empty());
+}
