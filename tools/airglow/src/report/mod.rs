@@ -1,7 +1,7 @@
 //! Measurements as data, and what a reader makes of them: tables, plots, fronts and comparisons.
 
 pub mod date;
-#[cfg(feature = "fog")]
+#[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
 pub mod html;
 pub mod interleave;
@@ -16,6 +16,6 @@ pub mod ranking;
 pub mod relight;
 pub mod sweep;
 pub mod table;
-#[cfg(feature = "fog")]
+#[cfg(all(feature = "fog", feature = "relight"))]
 pub mod timed_plan;
 pub mod write;
