@@ -7,6 +7,7 @@ mod control;
 mod declare;
 mod emitter;
 mod error;
+pub mod eval;
 mod glow;
 pub mod gpu;
 mod hierarchy;

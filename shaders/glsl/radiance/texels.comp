@@ -28,7 +28,7 @@ layout(std430, set = 0, binding = 5) buffer Gradients { vec4 gradients[]; };
 
 layout(push_constant) uniform Settings {
     uint triangle_count;
-    uint size; // texels along a side of a face, a multiple of 8
+    uint size; // texels along a side of a face
     uint keep_exact; // 1: samples that are exact already are left alone
 } settings;
 
@@ -162,9 +162,9 @@ void main()
 {
     uint lane = gl_LocalInvocationIndex;
     vec3 point = points[batch.first + gl_WorkGroupID.x].xyz;
-    uint tiles = settings.size / uint(TILE);
+    uint tiles = (settings.size + uint(TILE) - 1u) / uint(TILE);
     float side = 2.0 / float(settings.size);
-    float tile_side = 2.0 / float(tiles);
+    float tile_side = float(TILE) * side;
     vec4 sums[ELEMENTS];
     sums_clear(sums);
     bool wanted = settings.keep_exact == 0u || SAMPLE_LIGHT(uint(LIGHT_EXTENT)).z == 0.0;
@@ -188,7 +188,8 @@ void main()
             for (uint i = 0u; i < count; ++i) { meet(tile_seen[i], middle, side, rays); }
             barrier();
         }
-        float solid_angle = solid_angles[place.y * settings.size + place.x];
+        bool inside = max(place.x, place.y) < settings.size;
+        float solid_angle = inside ? solid_angles[place.y * settings.size + place.x] : 0.0;
         sums_add(texel_of(face, middle, side, solid_angle, rays), sums);
     }
     sums_write(sums, lane, wanted);

@@ -19,7 +19,7 @@ use crate::RadianceError;
 pub struct TexelSettings {
     /// What samples hold.
     pub shape: LightShape,
-    /// Texels along a side of a face: a multiple of 8, up to 128.
+    /// Texels along a side of a face: 1 to 512; multiples of 8 fill their tiles.
     pub size: u32,
     /// Rays along a side of a texel: 1, 2 or 4.
     pub rays: u32,
@@ -65,8 +65,8 @@ impl Texels {
     /// [`RadianceError::Setting`] for settings without kernel; [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: TexelSettings) -> Result<Self, RadianceError> {
         let TexelSettings { shape, size, rays } = settings;
-        if !(8..=128).contains(&size) || !size.is_multiple_of(8) {
-            return Err(RadianceError::setting("face size", size, "a multiple of 8 texels, 8 to 128"));
+        if !(1..=512).contains(&size) {
+            return Err(RadianceError::setting("face size", size, "1 to 512 texels"));
         }
         let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
             name: "radiance texels",
@@ -92,6 +92,12 @@ impl Texels {
             push_constant_size: size_of::<AnalyticConstants>() as u32,
         })?);
         Ok(self)
+    }
+
+    /// The same, that samples by cube maps alone.
+    #[must_use]
+    pub fn without_closed_forms(self) -> Self {
+        Self { analytic: None, ..self }
     }
 
     /// The settings it was made for.

@@ -17,6 +17,8 @@ use crate::{Incident, RadianceError, Triangle};
 pub struct Cube {
     size: usize,
     order: usize,
+    /// Rays along a side of a texel.
+    rays: usize,
     /// Solid angle of each texel of a face.
     solid_angles: Vec<f64>,
     /// Basis at each texel's centre, `[face][y][x][coefficient]`.
@@ -25,16 +27,16 @@ pub struct Cube {
     slopes: Vec<DVec3>,
 }
 
-/// What a texel sees: the radiance and distance of the nearest triangle.
+/// What a ray sees: the radiance and distance of the nearest triangle.
 #[derive(Clone, Copy)]
-struct Texel {
+struct Seen {
     distance: f64,
     radiance: DVec3,
-    /// The triangle's normal over its product with the texel's unit ray.
+    /// The triangle's normal over its product with the unit ray.
     tilt: DVec3,
 }
 
-const EMPTY: Texel = Texel { distance: f64::INFINITY, radiance: DVec3::ZERO, tilt: DVec3::ZERO };
+const EMPTY: Seen = Seen { distance: f64::INFINITY, radiance: DVec3::ZERO, tilt: DVec3::ZERO };
 
 impl Cube {
     /// Tables for faces of `size` by `size` texels.
@@ -56,7 +58,20 @@ impl Cube {
             let ray = ray(Face::ALL[texel / (size * size)], size, texel % size, texel / size % size);
             evaluate(order, ray.normalize(), values)?;
         }
-        Ok(Self { size, order, solid_angles, basis, slopes: Vec::new() })
+        Ok(Self { size, order, rays: 1, solid_angles, basis, slopes: Vec::new() })
+    }
+
+    /// The same cube, that sends `rays` by `rays` rays through each texel, whose basis is then taken in the middle of those
+    /// that meet what emits.
+    ///
+    /// # Errors
+    /// [`RadianceError::Setting`] unless there are 1 to 16.
+    pub fn with_rays(mut self, rays: usize) -> Result<Self, RadianceError> {
+        if !(1..=16).contains(&rays) {
+            return Err(RadianceError::setting("rays", rays, "1 to 16 along a side of a texel"));
+        }
+        self.rays = rays;
+        Ok(self)
     }
 
     /// The same cube, whose samples hold gradients, too.
@@ -82,19 +97,24 @@ impl Cube {
         if !self.slopes.is_empty() {
             incident.gradients = vec![DMat3::ZERO; incident.coefficients.len()];
         }
-        let mut texels = vec![EMPTY; self.size * self.size];
+        let mut seen = vec![EMPTY; self.fine() * self.fine()];
         for face in Face::ALL {
-            texels.fill(EMPTY);
+            seen.fill(EMPTY);
             for triangle in triangles {
-                self.rasterise(face, point, triangle, &mut texels);
+                self.rasterise(face, point, triangle, &mut seen);
             }
-            self.project(face, &texels, &mut incident);
+            self.project(face, &seen, &mut incident)?;
         }
         Ok(incident)
     }
 
-    /// Keeps, in each texel of a face, the triangle if it is nearer than what is there.
-    fn rasterise(&self, face: Face, point: DVec3, triangle: &Triangle, texels: &mut [Texel]) {
+    /// Rays along a side of a face.
+    fn fine(&self) -> usize {
+        self.size * self.rays
+    }
+
+    /// Keeps, in each ray of a face, the triangle if it is nearer than what is there.
+    fn rasterise(&self, face: Face, point: DVec3, triangle: &Triangle, seen: &mut [Seen]) {
         let [mut a, mut b, c] = triangle.corners.map(|corner| corner - point);
         let mut volume = a.dot(b.cross(c));
         if volume < 0.0 {
@@ -108,17 +128,17 @@ impl Cube {
         let normal = edges.iter().sum::<DVec3>();
         for y in rows[0]..rows[1] {
             for x in columns[0]..columns[1] {
-                let ray = ray(face, self.size, x, y);
+                let ray = ray(face, self.fine(), x, y);
                 let weights = edges.map(|edge| edge.dot(ray));
                 if weights.iter().any(|weight| *weight < 0.0) {
                     continue;
                 }
                 let along = weights.iter().sum::<f64>();
                 let distance = volume / along * ray.length();
-                let texel = &mut texels[y * self.size + x];
-                if distance < texel.distance {
+                let nearest = &mut seen[y * self.fine() + x];
+                if distance < nearest.distance {
                     let tilt = ray.length() / along * normal;
-                    *texel = Texel { distance, radiance: triangle.radiance, tilt };
+                    *nearest = Seen { distance, radiance: triangle.radiance, tilt };
                 }
             }
         }
@@ -133,53 +153,87 @@ impl Cube {
             return None;
         }
         if depths.iter().any(|depth| *depth <= 0.0) {
-            return Some([[0, self.size]; 2]);
+            return Some([[0, self.fine()]; 2]);
         }
         let range = |axis: DVec3| {
             let at = |i: usize| corners[i].dot(axis) / depths[i];
             let (low, high) = (at(0).min(at(1)).min(at(2)), at(0).max(at(1)).max(at(2)));
-            // One texel more on each side makes up for rounding.
-            let texel = |x: f64| (0.5 * (x + 1.0) * self.size as f64).clamp(-1.0, self.size as f64 + 1.0);
-            let first = (texel(low).floor() as isize - 1).max(0) as usize;
-            let end = (texel(high).ceil() as isize + 1).max(0) as usize;
-            [first.min(self.size), end.min(self.size)]
+            // One ray more on each side makes up for rounding.
+            let place = |x: f64| (0.5 * (x + 1.0) * self.fine() as f64).clamp(-1.0, self.fine() as f64 + 1.0);
+            let first = (place(low).floor() as isize - 1).max(0) as usize;
+            let end = (place(high).ceil() as isize + 1).max(0) as usize;
+            [first.min(self.fine()), end.min(self.fine())]
         };
         Some([range(right), range(down)])
     }
 
-    fn project(&self, face: Face, texels: &[Texel], incident: &mut Incident) {
-        let count = incident.coefficients.len();
-        let first = face as usize * texels.len();
-        for (i, (texel, solid_angle)) in texels.iter().zip(&self.solid_angles).enumerate() {
-            if texel.radiance == DVec3::ZERO {
+    fn project(&self, face: Face, seen: &[Seen], incident: &mut Incident) -> Result<(), RadianceError> {
+        for (texel, solid_angle) in self.solid_angles.iter().enumerate() {
+            let [x, y] = [texel % self.size, texel / self.size].map(|place| place * self.rays);
+            let share = solid_angle / (self.rays * self.rays) as f64;
+            let (mut middle, mut count) = ([0, 0], 0);
+            let (mut power, mut slope, mut tilt) = (DVec3::ZERO, DVec3::ZERO, DMat3::ZERO);
+            for ray in 0..self.rays * self.rays {
+                let [x, y] = [x + ray % self.rays, y + ray / self.rays];
+                let Seen { distance, radiance, tilt: normal } = seen[y * self.fine() + x];
+                if radiance == DVec3::ZERO {
+                    continue;
+                }
+                (middle, count) = ([middle[0] + 2 * x + 1, middle[1] + 2 * y + 1], count + 1);
+                let near = share / distance * radiance;
+                (power, slope) = (power + share * radiance, slope + near);
+                tilt += DMat3::from_cols(normal.x * near, normal.y * near, normal.z * near);
+                incident.solid_angle += share;
+                incident.nearness += share / distance;
+            }
+            if count == 0 {
                 continue;
             }
-            let power = *solid_angle * texel.radiance;
-            let basis = &self.basis[(first + i) * count..(first + i + 1) * count];
-            incident.coefficients.iter_mut().zip(basis).for_each(|(l, y)| *l += *y * power);
-            incident.solid_angle += solid_angle;
-            incident.nearness += solid_angle / texel.distance;
-            incident.slope += power / texel.distance;
-            self.project_gradients(first + i, texel, power / texel.distance, incident);
+            incident.slope += slope;
+            let at = middle.map(|sum| sum as f64 / (count * self.fine()) as f64 - 1.0);
+            let [right, down, normal] = face.axes();
+            let ray = (normal + at[0] * right + at[1] * down).normalize();
+            let whole = count == self.rays * self.rays;
+            self.add(
+                face as usize * self.solid_angles.len() + texel,
+                whole,
+                ray,
+                [power, slope],
+                tilt,
+                incident,
+            )?;
         }
+        Ok(())
     }
 
-    /// Adds a texel's part of the gradients: a patch of area dA at s from the point, normal n, sends
-    /// `L Y(s/|s|) n.s / |s|^3 dA`; moving the point is moving s the other way (Annen et al. 2004, section 3).
-    fn project_gradients(&self, place: usize, texel: &Texel, power: DVec3, incident: &mut Incident) {
-        if self.slopes.is_empty() {
-            return;
-        }
+    /// Adds a texel's part: of light its power, of gradients its slope and tilt. A patch of area dA at s from the point,
+    /// normal n, sends `L Y(s/|s|) n.s / |s|^3 dA`; moving the point is moving s the other way (Annen et al. 2004,
+    /// section 3). Where the `whole` texel emits, the basis at its ray is in the tables.
+    fn add(
+        &self,
+        place: usize,
+        whole: bool,
+        ray: DVec3,
+        [power, slope]: [DVec3; 2],
+        tilt: DMat3,
+        incident: &mut Incident,
+    ) -> Result<(), RadianceError> {
         let count = incident.coefficients.len();
-        let texels = self.size * self.size;
-        let at = place % texels;
-        let ray = ray(Face::ALL[place / texels], self.size, at % self.size, at / self.size).normalize();
         let range = place * count..(place + 1) * count;
-        let terms = self.basis[range.clone()].iter().zip(&self.slopes[range]);
-        for (gradient, (y, slope)) in incident.gradients.iter_mut().zip(terms) {
-            let change = *y * (3.0 * ray - texel.tilt) - *slope;
-            *gradient += DMat3::from_cols(change.x * power, change.y * power, change.z * power);
+        let mut values = self.basis[range.clone()].to_vec();
+        if !whole {
+            evaluate(self.order, ray, &mut values)?;
         }
+        incident.coefficients.iter_mut().zip(&values).for_each(|(l, y)| *l += *y * power);
+        if self.slopes.is_empty() {
+            return Ok(());
+        }
+        let change = DMat3::from_cols(ray.x * slope, ray.y * slope, ray.z * slope) * 3.0 - tilt;
+        let slopes = if whole { self.slopes[range].to_vec() } else { slopes(self.order, ray, &values) };
+        for (gradient, (y, s)) in incident.gradients.iter_mut().zip(values.iter().zip(slopes)) {
+            *gradient += change * *y - DMat3::from_cols(s.x * slope, s.y * slope, s.z * slope);
+        }
+        Ok(())
     }
 }
 

@@ -51,13 +51,15 @@ fn check(what: &str, found: &[Incident], truth: &[Incident], bound: f64) {
 #[test]
 fn texels_are_those_of_the_reference() {
     let (emitters, points) = (blocks(), points(20));
-    for (order, gradients) in [(3, false), (4, true), (5, false), (6, true)] {
+    for (order, gradients, size, rays) in
+        [(3, false, 20, 1), (4, true, 16, 2), (5, false, 8, 4), (6, false, 32, 2), (6, true, 16, 1)]
+    {
         let shape = LightShape { order, gradients };
-        let cube = Cube::new(order, 24).unwrap();
+        let cube = Cube::new(order, size as usize).unwrap().with_rays(rays as usize).unwrap();
         let cube = if gradients { cube.with_gradients() } else { cube };
         let truth: Vec<_> = points.iter().map(|point| cube.sample(*point, &emitters).unwrap()).collect();
-        let found = sampled(TexelSettings { shape, size: 24, rays: 1 }, &emitters, &points);
-        check(&format!("order {order}"), &found, &truth, 2e-4);
+        let found = sampled(TexelSettings { shape, size, rays }, &emitters, &points);
+        check(&format!("order {order}, {size} texels, {rays} rays"), &found, &truth, 5e-6);
     }
 }
 
