@@ -2,7 +2,7 @@
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout, ImageViewType};
 use airglow_gpu::{
-    Buffer, ComputePipelineDesc, Context, GpuError, Label, Location, Readback, Recorder, ViewDesc,
+    Buffer, ComputePipeline, Context, GpuError, Label, Location, Readback, Recorder, ViewDesc,
 };
 use airglow_graph::{Access, BufferDesc, ImageDesc, State};
 use bytemuck::Pod;
@@ -10,14 +10,14 @@ use bytemuck::Pod;
 use crate::NormalsError;
 use crate::brdf::{Brdf, Directions};
 use crate::build::{Build, LobeTexture};
-use crate::kernels::{self, BINDINGS, RowConstants};
+use crate::kernels::{self, RowConstants};
 use crate::map::NormalMap;
 use crate::mixture::{MAX_LOBES, WeightedLobe};
 use crate::normals::Normals;
 use crate::settings::Settings;
 use crate::stage::{Resource, dispatch};
 
-/// Rows of one dispatch: 32 MiB, below the least storage-buffer range of any device.
+/// Rows of one dispatch: at most 52 MiB, below the least storage-buffer range of any device.
 const ROWS: usize = 1 << 18;
 const OWNER: &str = "normals bench";
 
@@ -56,20 +56,12 @@ pub struct LevelLobes {
 
 impl Row {
     fn constants(&self) -> RowConstants {
-        let (kind, parameter) = match self.brdf {
-            Brdf::Lambert => (0.0, 0.0),
-            Brdf::BlinnPhong { exponent } => (1.0, exponent),
-            Brdf::Ggx { alpha } => (2.0, alpha),
-        };
         let mut lobes = [[0.0; 4]; MAX_LOBES];
         for (packed, lobe) in lobes.iter_mut().zip(&self.lobes) {
             *packed = lobe.packed();
         }
-        RowConstants {
-            light: self.directions.light.extend(kind).as_vec4().to_array(),
-            half_vector: self.directions.half.extend(parameter).as_vec4().to_array(),
-            lobes,
-        }
+        let [light, half_vector] = kernels::material(self.brdf, self.directions);
+        RowConstants { light, half_vector, lobes }
     }
 }
 
@@ -80,20 +72,24 @@ impl Bench<'_> {
     /// [`NormalsError::Range`] for a material out of range, [`NormalsError::Gpu`].
     pub fn radiance(&self, rows: &[Row]) -> Result<Vec<f32>, NormalsError> {
         rows.iter().try_for_each(|row| row.brdf.check())?;
-        let pipeline = self.context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "normals rows",
-            spirv: &kernels::rows(),
-            bindings: &BINDINGS,
-            push_constant_size: size_of::<u32>() as u32,
-        })?;
+        let pipeline = self.kernel("normals rows", &kernels::rows(), size_of::<u32>())?;
+        let constants: Vec<RowConstants> = rows.iter().map(Row::constants).collect();
+        self.rows(&pipeline, &constants)
+    }
+
+    /// A number for each row, by a kernel that takes their count.
+    pub(crate) fn rows<T: Pod>(
+        &self,
+        pipeline: &ComputePipeline,
+        rows: &[T],
+    ) -> Result<Vec<f32>, NormalsError> {
         let mut radiance = Vec::with_capacity(rows.len());
         for rows in rows.chunks(ROWS) {
-            let constants: Vec<RowConstants> = rows.iter().map(Row::constants).collect();
-            let input = self.upload("rows", &constants)?;
+            let input = self.upload("rows", rows)?;
             let output = self.scratch("radiance", 4 * rows.len())?;
             let count = rows.len();
             self.frame(&mut |recorder| {
-                dispatch(recorder, &pipeline, [&input, &output], &(count as u32), count)
+                dispatch(recorder, pipeline, [&input, &output], &(count as u32), count)
             })?;
             radiance.extend(self.read::<f32>(&output)?);
         }
@@ -167,7 +163,7 @@ impl Bench<'_> {
     }
 
     /// One frame, whose host must have recorded it.
-    fn frame(
+    pub(crate) fn frame(
         &self,
         record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>,
     ) -> Result<(), NormalsError> {
@@ -183,7 +179,7 @@ impl Bench<'_> {
     }
 
     /// What a buffer holds.
-    fn read<T: Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, NormalsError> {
+    pub(crate) fn read<T: Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, NormalsError> {
         let mut copy = None;
         self.frame(&mut |recorder| {
             recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::TransferSource)?;
@@ -193,14 +189,14 @@ impl Bench<'_> {
         Ok(copy.as_ref().map(Readback::read).transpose()?.unwrap_or_default())
     }
 
-    fn upload<T: Pod>(&self, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
+    pub(crate) fn upload<T: Pod>(&self, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
         let desc = BufferDesc { size: size_of_val(values) as u64, usage: BufferUsageFlags::STORAGE_BUFFER };
         let buffer = self.context.create_buffer(Label::new(OWNER, name), &desc, Location::Upload)?;
         buffer.write(0, values)?;
         Ok(buffer)
     }
 
-    fn scratch(&self, name: &str, bytes: usize) -> Result<Buffer, GpuError> {
+    pub(crate) fn scratch(&self, name: &str, bytes: usize) -> Result<Buffer, GpuError> {
         let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::TRANSFER_SRC;
         let desc = BufferDesc { size: bytes as u64, usage };
         self.context.create_buffer(Label::new(OWNER, name), &desc, Location::Device)

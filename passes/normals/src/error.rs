@@ -35,7 +35,8 @@ pub enum NormalsError {
     },
     /// A method that has no code on the device.
     #[error(
-        "normals: there is no method `{method}` on the device: give vmf:1, vmf:2, vmf:4, vmf:6 or default"
+        "normals: there is no method `{method}` on the device: give vmf:1, vmf:2, vmf:4, vmf:6, sh:3, sh:4, sh:5, mip, length, \
+         toksvig, roughness, geometric, lean or default"
     )]
     Method {
         /// What was asked for.

@@ -5,16 +5,15 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::NormalsError;
+use crate::averages::RivalRow;
 use crate::bench::{Bench, LevelLobes, Row};
 use crate::brdf::{Brdf, Directions};
 use crate::fit::FitSettings;
 use crate::map::NormalMap;
+use crate::method::Method;
 use crate::mixture::WeightedLobe;
 use crate::reference;
 use crate::settings::Settings;
-
-/// Lobes of the default method.
-const DEFAULT_LOBES: usize = 4;
 
 /// A row of `normals`: a texel of a level under a light of irradiance 1.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +30,8 @@ pub struct TexelRow {
     pub view: DVec3,
     /// The material.
     pub brdf: Brdf,
-    /// Lobes of a texel: 1, 2, 4 or 6.
-    pub lobes: usize,
+    /// What is kept of the texel.
+    pub method: Method,
 }
 
 /// What a row gave, 1/sr.
@@ -44,41 +43,27 @@ pub struct Evaluated {
     pub reference: f64,
 }
 
-/// The lobes of a method, `default` or `vmf:J`.
-///
-/// # Errors
-/// [`NormalsError::Method`].
-pub fn lobes(method: &str) -> Result<usize, NormalsError> {
-    match method {
-        "default" => Ok(DEFAULT_LOBES),
-        "vmf:1" => Ok(1),
-        "vmf:2" => Ok(2),
-        "vmf:4" => Ok(4),
-        "vmf:6" => Ok(6),
-        _ => Err(NormalsError::Method { method: method.to_owned() }),
-    }
-}
-
 /// Runs the rows; a refused one says why, the others still run.
 ///
 /// # Errors
-/// As [`Bench::build`] and [`Bench::radiance`].
+/// As [`Bench::build`], [`Bench::radiance`], [`Bench::averages`] and [`Bench::rival`].
 pub fn texels(
     bench: &Bench<'_>,
     map: &NormalMap,
     rows: &[TexelRow],
 ) -> Result<Vec<Result<Evaluated, NormalsError>>, NormalsError> {
     let mut results: Vec<Result<Evaluated, NormalsError>> = rows.iter().map(|row| row.truth(map)).collect();
-    let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut places: BTreeMap<Method, Vec<usize>> = BTreeMap::new();
     for (place, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
-        places.entry(rows[place].lobes).or_default().push(place);
+        places.entry(rows[place].method).or_default().push(place);
     }
-    for (lobes, places) in places {
-        let fit = FitSettings { lobes, ..Default::default() };
-        let levels = bench.build(map, &Settings { fit, budget: Some(u64::MAX), ..Default::default() })?;
-        let shaded = places.iter().map(|&place| rows[place].shaded(map, &levels));
-        let shaded: Vec<Row> = shaded.collect::<Result<_, _>>()?;
-        for (place, value) in places.into_iter().zip(bench.radiance(&shaded)?) {
+    for (method, places) in places {
+        let chosen: Vec<&TexelRow> = places.iter().map(|&place| &rows[place]).collect();
+        let values = match method {
+            Method::Lobes(lobes) => of_lobes(bench, map, lobes, &chosen)?,
+            _ => of_rival(bench, map, method, &chosen)?,
+        };
+        for (place, value) in places.into_iter().zip(values) {
             if let Ok(result) = &mut results[place] {
                 result.value = value.into();
             }
@@ -87,26 +72,65 @@ pub fn texels(
     Ok(results)
 }
 
+fn of_lobes(
+    bench: &Bench<'_>,
+    map: &NormalMap,
+    lobes: usize,
+    rows: &[&TexelRow],
+) -> Result<Vec<f32>, NormalsError> {
+    let fit = FitSettings { lobes, ..Default::default() };
+    let levels = bench.build(map, &Settings { fit, budget: Some(u64::MAX), ..Default::default() })?;
+    let shaded = rows.iter().map(|row| row.with_lobes(map, lobes, &levels));
+    bench.radiance(&shaded.collect::<Result<Vec<_>, _>>()?)
+}
+
+/// By a rival; where a single texel is seen, its normal, which every method shades alike.
+fn of_rival(
+    bench: &Bench<'_>,
+    map: &NormalMap,
+    method: Method,
+    rows: &[&TexelRow],
+) -> Result<Vec<f32>, NormalsError> {
+    let levels = bench.averages(map, method)?;
+    let row = |row: &&TexelRow| {
+        let kept = match row.level.checked_sub(1).and_then(|level| levels.get(level)) {
+            Some(level) => level.texel(row.x, row.y).to_vec(),
+            None => vec![map.normals()[row.y * map.size(0)[0] + row.x].extend(0.0).as_vec4().to_array()],
+        };
+        Ok((row.level == 0, RivalRow { kept, brdf: row.brdf, directions: row.directions()? }))
+    };
+    let rows = rows.iter().map(row).collect::<Result<Vec<_>, NormalsError>>()?;
+    let part = |single: bool| -> Vec<RivalRow> {
+        rows.iter().filter(|(of, _)| *of == single).map(|(_, row)| row.clone()).collect()
+    };
+    let mut single = bench.rival(Method::Mip, &part(true))?.into_iter();
+    let mut coarse = bench.rival(method, &part(false))?.into_iter();
+    let next = |(of, _): &(bool, RivalRow)| if *of { single.next() } else { coarse.next() };
+    Ok(rows.iter().filter_map(next).collect())
+}
+
 impl TexelRow {
     /// Checks the row and gives it its truth.
     fn truth(&self, map: &NormalMap) -> Result<Evaluated, NormalsError> {
         self.brdf.check()?;
-        lobes(&format!("vmf:{}", self.lobes))?;
-        let directions = Directions::new(self.light, self.view)?;
+        self.method.to_string().parse::<Method>()?;
+        let directions = self.directions()?;
         let footprint = map.footprint(self.level, self.x, self.y)?;
         let reference = reference::radiance(&footprint, self.brdf, directions);
         Ok(Evaluated { value: f64::NAN, reference })
     }
 
+    fn directions(&self) -> Result<Directions, NormalsError> {
+        Directions::new(self.light, self.view)
+    }
+
     /// The row with its lobes: where a single texel is seen, its normal.
-    fn shaded(&self, map: &NormalMap, levels: &[LevelLobes]) -> Result<Row, NormalsError> {
+    fn with_lobes(&self, map: &NormalMap, count: usize, levels: &[LevelLobes]) -> Result<Row, NormalsError> {
         let texel = self.y * map.size(self.level)[0] + self.x;
         let lobes = match self.level.checked_sub(1).and_then(|level| levels.get(level)) {
             None => vec![WeightedLobe { weight: 1.0, moment: map.normals()[texel] }],
-            Some(level) => {
-                level.lobes[texel * self.lobes..][..self.lobes].iter().map(|lobe| (*lobe).into()).collect()
-            }
+            Some(level) => level.lobes[texel * count..][..count].iter().map(|lobe| (*lobe).into()).collect(),
         };
-        Ok(Row { lobes, brdf: self.brdf, directions: Directions::new(self.light, self.view)? })
+        Ok(Row { lobes, brdf: self.brdf, directions: self.directions()? })
     }
 }

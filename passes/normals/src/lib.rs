@@ -21,6 +21,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod averages;
 pub mod bench;
 mod brdf;
 mod build;
@@ -32,6 +33,7 @@ mod fit;
 mod harmonics;
 pub mod kernels;
 mod map;
+mod method;
 mod mixture;
 mod normals;
 pub mod reference;
@@ -49,6 +51,7 @@ pub use error::NormalsError;
 pub use fit::{FitSettings, fit, fit_from};
 pub use harmonics::{Harmonics, band_factors};
 pub use map::{NormalMap, Sample};
+pub use method::Method;
 pub use mixture::{MAX_LOBES, Mixture, WeightedLobe};
 pub use normals::Normals;
 pub use settings::Settings;

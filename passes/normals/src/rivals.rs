@@ -44,6 +44,36 @@ pub fn toksvig(mean: DVec3, brdf: Brdf, directions: Directions) -> f64 {
     }
 }
 
+/// The variance that the length of the mean normal stands for, `(1 - r) / r`, added to the roughness of the material:
+/// `alpha'^2 = alpha^2 + 2 variance`.
+#[must_use]
+pub fn roughened(mean: DVec3, brdf: Brdf, directions: Directions) -> f64 {
+    let length = mean.length().clamp(1e-3, 1.0);
+    widened(mean, 2.0 * (1.0 - length) / length, brdf, directions)
+}
+
+/// Tokuyoshi and Kaplanyan, "Improved Geometric Specular Antialiasing" (2019): the roughness grows by the squared
+/// change of the mean normal from pixel to pixel, in x and y together, as far as 0.18.
+#[must_use]
+pub fn geometric(mean: DVec3, change: f64, brdf: Brdf, directions: Directions) -> f64 {
+    const VARIANCE: f64 = 0.5 * FRAC_1_PI; // of the pixel's filter
+    const MOST: f64 = 0.18;
+    widened(mean, (2.0 * VARIANCE * change).min(MOST), brdf, directions)
+}
+
+/// The mean normal under a material whose `alpha^2` has grown; exponents are `2 / alpha^2 - 2`.
+fn widened(mean: DVec3, growth: f64, brdf: Brdf, directions: Directions) -> f64 {
+    let brdf = match brdf {
+        Brdf::Lambert => Brdf::Lambert,
+        Brdf::BlinnPhong { exponent } => {
+            let squared = (2.0 / (exponent + 2.0) + growth).min(1.0);
+            Brdf::BlinnPhong { exponent: 2.0 / squared - 2.0 }
+        }
+        Brdf::Ggx { alpha } => Brdf::Ggx { alpha: (alpha * alpha + growth).min(1.0).sqrt() },
+    };
+    mip(mean, true, brdf, directions)
+}
+
 /// Olano and Baker, "LEAN Mapping" (2010): mean and covariance of the slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lean {

@@ -9,9 +9,13 @@ mod textures;
 use airglow_gpu::{GpuError, Recorder, Requirements};
 use airglow_math::statistics::relative_l2;
 use airglow_normals::bench::{Bench, LevelLobes, Row};
-use airglow_normals::eval::{TexelRow, lobes, texels};
-use airglow_normals::kernels::{AlignConstants, BINDINGS, FitConstants, PackConstants, RowConstants};
-use airglow_normals::{Brdf, FitSettings, Mixture, NormalMap, Settings, fit, reference, shade};
+use airglow_normals::eval::{TexelRow, texels};
+use airglow_normals::kernels::{
+    AlignConstants, AverageConstants, BINDINGS, FitConstants, PackConstants, RivalConstants, RowConstants,
+};
+use airglow_normals::{
+    Brdf, Directions, FitSettings, Method, Mixture, NormalMap, Settings, fit, reference, shade,
+};
 use airglow_tests::device::fixture_with;
 use airglow_tests::host_layout;
 use airglow_tests::reflect::Module;
@@ -161,18 +165,18 @@ fn rows_of_texels_are_near_the_truth_or_refused() {
         light: DVec3::new(0.3, 0.1, 1.0),
         view: DVec3::new(-0.1, 0.5, 1.0),
         brdf: Brdf::BlinnPhong { exponent: 50.0 },
-        lobes: lobes("default").unwrap(),
+        method: "default".parse().unwrap(),
     };
     let rows = [
         row,
-        TexelRow { level: 6, x: 0, y: 0, lobes: 6, ..row },
+        TexelRow { level: 6, x: 0, y: 0, method: Method::Lobes(6), ..row },
         TexelRow { level: 0, brdf: Brdf::Ggx { alpha: 0.5 }, ..row },
         TexelRow { level: 4, x: 1, y: 1, brdf: Brdf::Lambert, ..row },
         TexelRow { level: 7, x: 0, y: 0, ..row },
         TexelRow { x: 8, ..row },
         TexelRow { light: DVec3::ZERO, ..row },
         TexelRow { brdf: Brdf::Ggx { alpha: 0.0 }, ..row },
-        TexelRow { lobes: 3, ..row },
+        TexelRow { method: Method::Lobes(3), ..row },
     ];
     let results = with_bench(|bench| texels(bench, &map, &rows).unwrap());
     for result in &results[..4] {
@@ -183,8 +187,37 @@ fn rows_of_texels_are_near_the_truth_or_refused() {
         let error = result.as_ref().unwrap_err().to_string();
         assert!(error.contains(word), "{error} does not name {word}");
     }
-    for refused in ["vmf:3", "vmf:", "lean", "sh:3"] {
-        assert!(lobes(refused).unwrap_err().to_string().contains("vmf:4"));
+    for refused in ["vmf:3", "vmf:", "leadr", "sh:6"] {
+        assert!(refused.parse::<Method>().unwrap_err().to_string().contains("vmf:4"));
+    }
+}
+
+#[test]
+fn rivals_on_the_device_are_those_of_the_reference() {
+    let maps = [common::groove(32), common::grain(25)];
+    let brdfs = [Brdf::Lambert, Brdf::BlinnPhong { exponent: 50.0 }, Brdf::Ggx { alpha: 0.3 }];
+    for method in Method::ALL.into_iter().filter(|method| !matches!(method, Method::Lobes(_))) {
+        let (mut values, mut expected) = (Vec::new(), Vec::new());
+        for map in &maps {
+            let mut random = Random(13);
+            let mut rows = Vec::new();
+            for i in 0..60 {
+                let level = i % map.levels();
+                let [width, height] = map.size(level);
+                let (x, y) = (random.below(width), random.below(height));
+                let (light, view) = (random.hemisphere(), random.hemisphere());
+                rows.push(TexelRow { level, x, y, light, view, brdf: brdfs[i % 3], method });
+            }
+            for (row, found) in rows.iter().zip(with_bench(|bench| texels(bench, map, &rows).unwrap())) {
+                let directions = Directions::new(row.light, row.view).unwrap();
+                let of = if row.level == 0 { Method::Mip } else { method };
+                values.push(found.unwrap().value);
+                expected.push(of.radiance(map, [row.level, row.x, row.y], row.brdf, directions).unwrap());
+            }
+        }
+        let error = relative_l2(&values, &expected).unwrap();
+        println!("{method}: {error:.1e}");
+        assert!(error < 1e-4, "{method}: {error:e}");
     }
 }
 
@@ -211,4 +244,16 @@ fn host_structs_are_as_the_compiler_laid_them_out() {
     rows.assert_bindings(&BINDINGS);
     let row = rows.bindings[0].block.as_ref().unwrap().members[0].block.as_ref().unwrap();
     row.assert_matches(&host_layout!(RowConstants { light, half_vector, lobes }));
+    for name in ["mean", "lean", "sh.ORDER3", "sh.ORDER4", "sh.ORDER5"] {
+        let average = Module::load(&format!("normals/average.{name}.spv")).unwrap();
+        average.assert_bindings(&BINDINGS);
+        let layout = host_layout!(AverageConstants { fine_size, size, first, single });
+        average.push_constants.as_ref().unwrap().assert_matches(&layout);
+    }
+    for name in ["lean", "ORDER5.sh"] {
+        let rivals = Module::load(&format!("normals/rivals.{name}.spv")).unwrap();
+        rivals.assert_bindings(&BINDINGS);
+        let row = rivals.bindings[0].block.as_ref().unwrap().members[0].block.as_ref().unwrap();
+        row.assert_matches(&host_layout!(RivalConstants { light, half_vector, factors, kept }));
+    }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use airglow::normals::eval::{self, Evaluated, TexelRow};
-use airglow::normals::{Bench, Brdf, NormalMap};
+use airglow::normals::{Bench, Brdf, Method, NormalMap};
 use airglow_scene::image_io::read_image;
 use airglow_scene::srgb_encode;
 use glam::DVec3;
@@ -30,7 +30,7 @@ pub fn normals(bench: &Bench<'_>, table: &Table, settings: &Settings) -> Outcome
             light: vector(["lx", "ly", "lz"])?,
             view: vector(["vx", "vy", "vz"])?,
             brdf: brdf(table.word(row, "brdf", "")?)?,
-            lobes: eval::lobes(method).map_err(|error| error.to_string())?,
+            method: method.parse::<Method>().map_err(|error| error.to_string())?,
         })
     };
     let (places, rows) = accepted((0..table.row_count()).map(read).collect());
