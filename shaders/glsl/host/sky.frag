@@ -1,11 +1,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The background: the environment's radiance in the direction of the pixel.
+//
+// HOST_GLOW 1: seen through a medium: what it leaves of the environment, and a map of the glow that it makes of it.
 
 #include "host/frame.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D environment;
 layout(set = 0, binding = 2) uniform sampler environment_sampler;
+#if HOST_GLOW
+layout(set = 0, binding = 3) uniform texture2D glow;
+
+layout(push_constant) uniform Medium {
+    vec4 left; // of light from the environment; w unused
+} medium;
+#endif
 
 layout(location = 0) in vec3 direction;
 

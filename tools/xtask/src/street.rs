@@ -11,27 +11,27 @@ use crate::error::Error;
 use crate::glb::{self, Buffers};
 use crate::mesh::Mesh;
 
-const EYE: Vec3 = Vec3::new(0.6, 1.7, 8.0);
-const TARGET: Vec3 = Vec3::new(-0.2, 2.1, -10.0);
+const EYE: Vec3 = Vec3::new(0.2, 1.5, 3.6);
+const TARGET: Vec3 = Vec3::new(0.1, 1.9, -10.0);
 
-/// Where the lamps hang, metres: 11, 23 and 50 m from the camera.
+/// Where the lamps hang, metres: 7, 18 and 38 m from the camera.
 const LAMPS: [Vec3; 3] =
-    [Vec3::new(-3.2, 4.2, -1.5), Vec3::new(3.4, 4.2, -14.0), Vec3::new(-3.2, 4.2, -41.0)];
+    [Vec3::new(-2.6, 3.7, -2.6), Vec3::new(2.6, 3.7, -14.0), Vec3::new(-2.9, 3.7, -34.0)];
 const LAMP_RADIUS: f32 = 0.16;
 /// W/sr in each channel: warm.
-const LAMP_INTENSITY: Vec3 = Vec3::new(60.0, 38.0, 16.0);
+const LAMP_INTENSITY: Vec3 = Vec3::new(60.0, 43.0, 24.0);
 
 /// A spot light under the eaves of the house, which shines down and away from the wall.
-const SPOT: Vec3 = Vec3::new(4.35, 3.6, -6.5);
-const SPOT_DIRECTION: Vec3 = Vec3::new(-0.45, -1.0, 0.1);
+const SPOT: Vec3 = Vec3::new(3.5, 3.2, -5.2);
+const SPOT_DIRECTION: Vec3 = Vec3::new(-0.65, -1.0, 0.3);
 const SPOT_INTENSITY: Vec3 = Vec3::new(60.0, 75.0, 100.0);
 
 /// Low and high corners of the blocks, metres, by material.
 const GROUND: (Vec3, Vec3) = (Vec3::new(-60.0, -0.2, -120.0), Vec3::new(60.0, 0.0, 30.0));
-const HOUSE: (Vec3, Vec3) = (Vec3::new(4.5, 0.0, -10.0), Vec3::new(10.0, 5.5, 1.0));
+const HOUSE: (Vec3, Vec3) = (Vec3::new(3.7, 0.0, -9.5), Vec3::new(10.0, 5.5, 6.0));
 const PLINTHS: [(Vec3, Vec3); 2] = [
-    (Vec3::new(-2.1, 0.0, -3.9), Vec3::new(-1.1, 0.8, -2.9)),
-    (Vec3::new(1.1, 0.0, -3.4), Vec3::new(2.1, 0.8, -2.4)),
+    (Vec3::new(-1.25, 0.0, -3.4), Vec3::new(-0.45, 0.7, -2.6)),
+    (Vec3::new(0.65, 0.0, -2.9), Vec3::new(1.45, 0.7, -2.1)),
 ];
 
 /// Writes `street.glb` into `assets/mesh`.
@@ -69,7 +69,7 @@ pub fn make(assets: &Path) -> Result<(), Error> {
     globe_material["extensions"] =
         json!({"KHR_materials_emissive_strength": {"emissiveStrength": strongest}});
     let materials: [Value; 4] = [
-        glb::material("ground", [0.20, 0.20, 0.21], 0.0, 0.7),
+        glb::material("ground", [0.16, 0.16, 0.17], 0.0, 0.45),
         glb::material("plaster", [0.55, 0.50, 0.45], 0.0, 1.0),
         glb::material("iron", [0.05, 0.05, 0.05], 0.0, 0.5),
         globe_material,

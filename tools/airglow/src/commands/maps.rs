@@ -17,7 +17,7 @@ use crate::files;
 use crate::host::device::{self, Device};
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings};
+use crate::host::renderer::{Air, Renderer, Settings};
 use crate::output::Output;
 use crate::report::lines::{self, Series};
 
@@ -117,7 +117,7 @@ fn draw(
         turn: DQuat::IDENTITY,
         spin: 0.0,
         without_relight: false,
-        without_fog: false,
+        air: Air::default(),
         window: None,
     };
     let passes = if truth { arguments.passes } else { 1 };

@@ -11,7 +11,7 @@ use crate::commands::what_if;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings, WARM_UP};
+use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
 
@@ -116,7 +116,7 @@ fn frame(arguments: &Arguments) -> Settings {
         turn: DQuat::IDENTITY,
         spin: 0.0,
         without_relight: arguments.without == Some(PassName::Relight),
-        without_fog: arguments.without == Some(PassName::Fog),
+        air: Air::with_fog(arguments.without != Some(PassName::Fog)),
         window: None,
     }
 }

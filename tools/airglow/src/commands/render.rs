@@ -12,10 +12,12 @@ use crate::cli::Global;
 use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
+#[cfg(feature = "fog")]
+use crate::host::airs;
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
-use crate::host::renderer::{Picture, Renderer, Settings, WARM_UP};
+use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
 use crate::host::{device, truth};
 use crate::measure::health::{self, Count};
 use crate::measure::pass::{PassStat, counted};
@@ -36,6 +38,7 @@ use crate::report::model::Machine;
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
   airglow render assets/scenes/demo.toml -o both.png --without relight --split
   airglow render assets/scenes/demo.toml -o pair.png --views 2
+  airglow render assets/scenes/street.toml -o airs.png --compare-fog --size 640x540
   airglow render assets/scenes/grooves.toml -o truth.png --maps texels --samples 4 --passes 64
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
@@ -83,6 +86,14 @@ pub struct Arguments {
     /// With --without: show the left half of the picture without the pass and the right half with it.
     #[arg(long, requires = "without")]
     split: bool,
+    /// Draw the scene's medium as exponential depth fog, of the mean colour of the picture by the fog pass.
+    #[cfg(feature = "fog")]
+    #[arg(long, conflicts_with_all = ["without", "compare_fog"])]
+    depth_fog: bool,
+    /// Draw the scene three times, side by side: in clear air, in exponential depth fog and by the fog pass.
+    #[cfg(feature = "fog")]
+    #[arg(long, conflicts_with = "without")]
+    compare_fog: bool,
     /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass.
     #[arg(long, conflicts_with = "without")]
     reference: bool,
@@ -165,7 +176,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         renderer.health().map_or(Ok(()), |health| health::clear(device, health))?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let statistics = arguments.pipeline_statistics;
-        let mut picture = renderer.draw_counted(&settings, arguments.frames as usize, statistics)?;
+        let mut picture = arguments.picture(&mut renderer, &mut settings)?;
         if arguments.passes > 1 {
             picture.linear = renderer.average(&settings, arguments.passes)?;
             picture.display = tone::encode(&picture.linear, settings.exposure);
@@ -209,12 +220,26 @@ fn settings(arguments: &Arguments) -> Settings {
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
         without_relight: arguments.leaves_out_relight(),
-        without_fog: arguments.without == Some(PassName::Fog) && !arguments.split,
+        air: Air::with_fog(arguments.without != Some(PassName::Fog) || arguments.split),
         window: None,
     }
 }
 
 impl Arguments {
+    /// The frames asked for; `settings` become those of the last.
+    fn picture(&self, renderer: &mut Renderer<'_>, settings: &mut Settings) -> Outcome<Picture> {
+        let frames = self.frames as usize;
+        #[cfg(feature = "fog")]
+        if self.compare_fog {
+            return airs::side_by_side(renderer, settings, frames);
+        }
+        #[cfg(feature = "fog")]
+        if self.depth_fog {
+            settings.air = airs::depth_fog(renderer, settings)?;
+        }
+        renderer.draw_counted(settings, frames, self.pipeline_statistics)
+    }
+
     /// Whether the pass is not even there; a split picture needs it.
     fn leaves_out_relight(&self) -> bool {
         self.without == Some(PassName::Relight) && !self.split
@@ -223,7 +248,7 @@ impl Arguments {
     /// The settings of the left half of a split picture.
     fn split(&self, settings: Settings) -> Settings {
         match self.without {
-            Some(PassName::Fog) => Settings { without_fog: true, ..settings },
+            Some(PassName::Fog) => Settings { air: Air::Clear, ..settings },
             _ => Settings { without_relight: true, ..settings },
         }
     }

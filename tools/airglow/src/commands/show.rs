@@ -10,7 +10,7 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::host::device;
 use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings};
+use crate::host::renderer::{Air, Renderer, Settings};
 use crate::measure::pass::{PassStat, timed};
 use crate::output::Output;
 use crate::report::model::Machine;
@@ -95,7 +95,7 @@ fn settings(arguments: &Arguments) -> Settings {
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: 0.0,
         without_relight: false,
-        without_fog: false,
+        air: Air::default(),
         window: None,
     }
 }

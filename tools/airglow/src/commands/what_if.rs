@@ -10,7 +10,7 @@ use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings};
+use crate::host::renderer::{Air, Renderer, Settings};
 use crate::output::Output;
 
 /// Every key and what it takes.
@@ -85,7 +85,7 @@ fn apply(change: &str, scene: &mut Scene, settings: &mut Settings) -> Outcome {
         ("environment", _) => environment(value)?.map(|environment| scene.environment = environment),
         ("medium", _) => (value == "none").then(|| scene.medium = None),
         ("relight", _) => switch(value).map(|on| settings.without_relight = !on),
-        ("fog", _) => switch(value).map(|on| settings.without_fog = !on),
+        ("fog", _) => switch(value).map(|on| settings.air = Air::with_fog(on)),
         ("views", _) => whole(value, 8).map(|views| settings.views = views),
         ("samples", _) => whole(value, 8).map(|samples| settings.samples = samples),
         ("size", _) => size(value).map(|size| settings.size = size),

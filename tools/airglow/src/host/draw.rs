@@ -15,9 +15,11 @@ use bytemuck::{Pod, Zeroable};
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
+use super::sky::{Behind, SkyPipelines};
 use super::view::SharedView;
 
-const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+/// The format of depth.
+pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The pipelines of the host's draws, for one format of the HDR target.
 pub struct Pipelines {
@@ -27,7 +29,8 @@ pub struct Pipelines {
     fogged: Option<[GraphicsPipeline; 2]>,
     /// The same two for surfaces with normal maps, by the layers of what is kept of these.
     mapped: BTreeMap<u32, [GraphicsPipeline; 2]>,
-    sky: GraphicsPipeline,
+    /// Behind the surfaces.
+    pub sky: SkyPipelines,
     develop: ComputePipeline,
     hdr: vk::Format,
 }
@@ -130,7 +133,7 @@ impl Pipelines {
             ambient,
             fogged: fogged.map(in_fog).transpose()?,
             mapped: mapped.iter().map(with_map).collect::<Result<_, _>>()?,
-            sky: sky_pipeline(context, hdr)?,
+            sky: SkyPipelines::new(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
                 spirv: &shaders::develop(),
@@ -154,15 +157,15 @@ impl Pipelines {
         view: &SharedView,
         colours: Option<&VertexColours>,
         lights: Option<&Lights>,
-        environment: Option<Handle<Image>>,
+        behind: Option<&Behind>,
         size: [u32; 2],
     ) -> Drawn {
         let mut pass = graph.pass("scene draw", PassKind::Graphics);
         if let Some(colours) = colours {
             pass.read(&colours.buffer, Access::VertexBuffer);
         }
-        if let Some(environment) = &environment {
-            pass.read(environment, Access::FragmentSampled);
+        if let Some(behind) = behind {
+            pass.read(&behind.environment, Access::FragmentSampled);
         }
         let lobes = lights.and_then(|lights| lights.lobes);
         if let Some(lobes) = &lobes {
@@ -178,6 +181,7 @@ impl Pipelines {
         let lit = if colours.is_some() { lit } else { ambient };
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
         let mapped = if lobes.is_some() { BTreeMap::new() } else { self.mapped.clone() };
+        let glow = behind.and_then(|behind| behind.glow.clone());
         let (scene, view) = (Arc::clone(scene), view.clone());
         let (colours, lights) = (colours.cloned(), lights.cloned());
         pass.record(Box::new(move |recorder, resources| {
@@ -374,23 +378,6 @@ fn scene_pipeline(
         cull: vk::CullModeFlags::NONE,
         front_face: vk::FrontFace::COUNTER_CLOCKWISE,
         depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: true }),
-        colors: &[hdr],
-        blend: Blend::None,
-    })
-}
-
-fn sky_pipeline(context: &Context, hdr: vk::Format) -> Result<GraphicsPipeline, GpuError> {
-    context.create_graphics_pipeline(&GraphicsPipelineDesc {
-        name: "sky",
-        vertex: &shaders::sky_vertex(),
-        fragment: Some(&shaders::sky_fragment()),
-        bindings: &DRAW_BINDINGS[..3],
-        push_constant_size: 0,
-        vertex_buffers: &[],
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        cull: vk::CullModeFlags::NONE,
-        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-        depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: false }),
         colors: &[hdr],
         blend: Blend::None,
     })

@@ -3,14 +3,17 @@
 use airglow::fog::{self, Fog, Lobe, LobeTables};
 use airglow::math::World;
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Context, Record, Requirements};
+use airglow_gpu::{Record, Requirements};
 use airglow_graph::{Graph, LeftOut};
 use airglow_scene::{Camera, Light, LightKind, Material, MaterialClass, Projection, Scene};
-use glam::Vec3;
+use glam::{DQuat, Vec3};
 use half::f16;
 
+use super::depth_fog::{DepthFog, DepthFogConstants};
+use super::device::Device;
 use super::draw::Drawn;
-use super::renderer::{Renderer, Settings};
+use super::fog_sky::FoggedSky;
+use super::renderer::{Air, Renderer, Settings};
 use super::scene::DeviceScene;
 use super::shaders;
 use crate::failure::{Failure, Outcome};
@@ -23,6 +26,8 @@ pub struct SceneFog {
     pub(super) pass: Fog,
     /// Tables of the lobes that the materials reflect its lights by.
     pub(super) lobes: LobeTables,
+    /// The environment through the medium.
+    pub(super) sky: Option<FoggedSky>,
     medium: fog::Medium,
     lights: Vec<fog::Light>,
 }
@@ -30,16 +35,27 @@ pub struct SceneFog {
 /// What the device must offer for a scene.
 pub fn requirements(scene: &Scene) -> Requirements {
     match scene.medium {
-        Some(_) => Fog::requirements(&fog::Settings::default()),
+        Some(_) => Fog::requirements(&settings(scene, fog::Settings::default().format)),
         None => Requirements::engine(),
     }
 }
 
+/// The settings of the pass for a scene.
+fn settings(scene: &Scene, format: vk::Format) -> fog::Settings {
+    fog::Settings { format, environment: scene.environment.is_some(), ..fog::Settings::default() }
+}
+
 impl SceneFog {
-    /// Makes the pass where the scene has a medium; the picture is of format `hdr`.
-    pub fn new(context: &Context, scene: &Scene, hdr: vk::Format) -> Outcome<Option<Self>> {
+    /// Makes the pass where the scene has a medium; the picture is of format `hdr`. The environment of the scene as it is
+    /// `uploaded` is convolved.
+    pub fn new(
+        device: &Device<'_>,
+        scene: &Scene,
+        uploaded: Option<&DeviceScene>,
+        hdr: vk::Format,
+    ) -> Outcome<Option<Self>> {
         let Some(medium) = scene.medium else { return Ok(None) };
-        let settings = fog::Settings { format: hdr, ..fog::Settings::default() };
+        let context = device.context();
         let medium = fog::Medium {
             extinction: medium.extinction.map(f64::from),
             albedo: medium.albedo.map(f64::from),
@@ -50,8 +66,10 @@ impl SceneFog {
         let reflecting = scene.materials.iter().filter(|_| !lights.is_empty());
         let lobes: Vec<Lobe> = reflecting.flat_map(lobes).flatten().collect();
         let lobes = LobeTables::new(context, fog::Preset::Default, &lobes).map_err(Failure::work)?;
-        let pass = Fog::new(context, settings).map_err(Failure::work)?;
-        Ok(Some(Self { pass, lobes, medium, lights }))
+        let pass = Fog::new(context, settings(scene, hdr)).map_err(Failure::work)?;
+        let sky =
+            uploaded.map(|uploaded| FoggedSky::new(device, scene, uploaded, &medium)).transpose()?.flatten();
+        Ok(Some(Self { pass, lobes, sky, medium, lights }))
     }
 
     /// The fragment stage of the forward draw, where surfaces reflect light out of the medium.
@@ -68,8 +86,8 @@ impl SceneFog {
         }
     }
 
-    /// The view of a camera in a picture of that aspect.
-    pub fn view(&self, camera: &Camera, aspect: f32) -> fog::View {
+    /// The view of a camera in a picture of that aspect; `rotation` is world from environment map.
+    pub fn view(&self, camera: &Camera, aspect: f32, rotation: DQuat) -> Outcome<fog::View> {
         let axis = |column: glam::Vec4| column.truncate().as_dvec3();
         let aspect = f64::from(aspect);
         let mut world = World::default();
@@ -95,7 +113,8 @@ impl SceneFog {
             forward: -axis(transform.z_axis),
             edges: [-x, x, -y, y],
         };
-        fog::View { world, camera, medium: self.medium, lights: self.lights.clone(), environment: None }
+        let environment = self.sky.as_ref().map(|sky| sky.environment(rotation)).transpose()?;
+        Ok(fog::View { world, camera, medium: self.medium, lights: self.lights.clone(), environment })
     }
 }
 
@@ -130,9 +149,20 @@ pub fn add(
     graph: &mut Graph<Record>,
     drawn: &mut [Drawn],
 ) -> Outcome<Vec<fog::Control>> {
-    let present = match (&renderer.fog, settings.without_fog) {
-        (Some(present), false) => present,
-        (Some(_), true) => {
+    let fog_views = renderer.fog_views(settings, settings.turn)?;
+    let size = settings.size.map(|side| side * settings.samples);
+    let present = match (&renderer.fog, settings.air) {
+        (Some(present), Air::Fog) => present,
+        (Some(present), Air::DepthFog(colour)) => {
+            let context = renderer.device.context();
+            let pass = DepthFog::new(context, present.pass.settings().format).map_err(Failure::work)?;
+            graph.leave_out(left_out("the host draws depth fog instead", "a frame without depth fog"));
+            for (drawn, view) in drawn.iter_mut().zip(fog_views) {
+                pass.add(graph, drawn, depth_fog_constants(&view, colour), size);
+            }
+            return Ok(Vec::new());
+        }
+        (Some(_), Air::Clear) => {
             graph.leave_out(left_out(
                 "the host was asked to leave it out (--without fog)",
                 "a frame without --without fog",
@@ -145,14 +175,24 @@ pub fn add(
         }
     };
     let mut controls = Vec::new();
-    for (drawn, view) in drawn.iter_mut().zip(renderer.fog_views(settings)) {
-        let size = settings.size.map(|side| side * settings.samples);
+    for (drawn, view) in drawn.iter_mut().zip(fog_views) {
         let frame = fog::Frame { size, surface: drawn.hdr, depth: drawn.depth, target: None, view };
         let fogged = present.pass.add(graph, &frame).map_err(Failure::work)?;
         drawn.hdr = fogged.colour;
         controls.extend(fogged.control);
     }
     Ok(controls)
+}
+
+/// Depth fog of the medium's extinction.
+fn depth_fog_constants(view: &fog::View, colour: [f32; 3]) -> DepthFogConstants {
+    let depth = &view.world.depth;
+    let wide = |[r, g, b]: [f32; 3], w: f32| [r, g, b, w];
+    DepthFogConstants {
+        depth: view.world.depth_coefficients().map(|value| value as f32),
+        extinction: wide(view.medium.extinction.map(|value| value as f32), depth.farthest() as f32),
+        colour: wide(colour, 0.0),
+    }
 }
 
 /// The record of the pass being left out because there is nothing to see through.

@@ -10,7 +10,8 @@ use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexCol
 #[cfg(feature = "fog")]
 use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
-use super::renderer::{Renderer, Settings};
+use super::renderer::{Air, Renderer, Settings};
+use super::sky::{Behind, Glow};
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
 
@@ -106,13 +107,22 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let pipelines = &renderer.pipelines;
     let lobes = lobes(renderer, settings, &mut graph, &mut imports);
     let lights = renderer.lights.map(|lights| {
-        let lights = if settings.without_fog { lights.without_medium() } else { lights };
+        let lights = if settings.air == Air::Fog { lights } else { lights.without_medium() };
         Lights { constants: Arc::new(lights), lobes }
     });
+    let behind = environment.map(|environment| Behind { environment, glow: glow(renderer, settings) });
     let mut drawn = Vec::with_capacity(views.len());
     for view in &views {
         let (colours, lights) = (colours.as_ref(), lights.as_ref());
-        drawn.push(pipelines.scene(&mut graph, &renderer.scene, view, colours, lights, environment, size));
+        drawn.push(pipelines.scene(
+            &mut graph,
+            &renderer.scene,
+            view,
+            colours,
+            lights,
+            behind.as_ref(),
+            size,
+        ));
     }
 
     // The medium before it dims them and glows.
@@ -155,6 +165,32 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     })
 }
 
+/// What a medium before the environment does to the bands of its light, where there is one.
+#[cfg(feature = "fog")]
+fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec<[f64; 3]>> {
+    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
+    Some(fog.sky.as_ref()?.factors.clone())
+}
+
+/// There is no fog.
+#[cfg(not(feature = "fog"))]
+fn filter(_: &Renderer<'_>, _: &Settings) -> Option<Vec<[f64; 3]>> {
+    None
+}
+
+/// What it makes of the background.
+#[cfg(feature = "fog")]
+fn glow(renderer: &Renderer<'_>, settings: &Settings) -> Option<Glow> {
+    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
+    Some(fog.sky.as_ref()?.glow.clone())
+}
+
+/// There is no fog.
+#[cfg(not(feature = "fog"))]
+fn glow(_: &Renderer<'_>, _: &Settings) -> Option<Glow> {
+    None
+}
+
 /// The tables that the materials' lobes need in fog.
 #[cfg(feature = "fog")]
 fn lobes(
@@ -163,7 +199,7 @@ fn lobes(
     graph: &mut Graph<Record>,
     imports: &mut Imports,
 ) -> Option<Handle<Buffer>> {
-    let fog = renderer.fog.as_ref().filter(|_| !settings.without_fog)?;
+    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
     fog.lobes.add(graph, imports)
 }
 

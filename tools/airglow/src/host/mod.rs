@@ -14,6 +14,8 @@ pub mod environment_samples;
 pub mod filter;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod fog_sky;
 #[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
@@ -28,6 +30,8 @@ pub mod renderer;
 pub mod scene;
 #[cfg(feature = "relight")]
 pub mod shaders;
+#[cfg(feature = "relight")]
+pub mod sky;
 pub mod texture;
 pub mod transfer;
 pub mod truth;

@@ -79,11 +79,31 @@ pub struct Settings {
     pub spin: f64,
     /// Leaves the relight pass out of the frame, though it is there: ambient light only.
     pub without_relight: bool,
-    /// Leaves the fog pass out of the frame: clear air.
-    pub without_fog: bool,
+    /// How the scene's medium is drawn.
+    pub air: Air,
     /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
     /// order of their channels.
     pub window: Option<ImageDesc>,
+}
+
+/// How the medium of a scene is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Air {
+    /// By the fog pass.
+    #[default]
+    Fog,
+    /// Not at all: clear air.
+    Clear,
+    /// As exponential depth fog of this colour, W/sr/m2.
+    #[cfg(feature = "fog")]
+    DepthFog([f32; 3]),
+}
+
+impl Air {
+    /// Fog, or clear air without it.
+    pub fn with_fog(fog: bool) -> Self {
+        if fog { Self::Fog } else { Self::Clear }
+    }
 }
 
 impl Settings {
@@ -183,7 +203,7 @@ impl<'d> Renderer<'d> {
         }
         let [linear, display] = targets(device, picture)?;
         #[cfg(feature = "fog")]
-        let fog = SceneFog::new(context, scene, hdr)?;
+        let fog = SceneFog::new(device, scene, Some(&device_scene), hdr)?;
         #[cfg(feature = "fog")]
         fog.iter().for_each(|fog| fog.name_tables(scene, &mut device_scene));
         #[cfg(feature = "fog")]
@@ -199,8 +219,13 @@ impl<'d> Renderer<'d> {
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
         let lights = !scene.lights.is_empty();
-        let pipelines =
+        #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only a medium adds to the sky"))]
+        let mut pipelines =
             Pipelines::new(context, hdr, lights, fogged.as_deref(), &mapped).map_err(Failure::work)?;
+        #[cfg(feature = "fog")]
+        if fog.as_ref().is_some_and(|fog| fog.sky.is_some()) {
+            pipelines.sky.in_medium(context, hdr).map_err(Failure::work)?;
+        }
         Ok(Self {
             device,
             scene: Arc::new(device_scene),
@@ -261,13 +286,14 @@ impl<'d> Renderer<'d> {
         view::row(&self.camera, settings.views).iter().map(constants).collect()
     }
 
-    /// What the fog pass needs of each camera, from left to right.
+    /// What the fog pass needs of each camera, from left to right, with the environment turned by `turn`.
     #[cfg(feature = "fog")]
-    pub(super) fn fog_views(&self, settings: &Settings) -> Vec<airglow::fog::View> {
+    pub(super) fn fog_views(&self, settings: &Settings, turn: DQuat) -> Outcome<Vec<airglow::fog::View>> {
         let aspect = view::aspect(settings.size);
+        let Some(fog) = &self.fog else { return Ok(Vec::new()) };
+        let rotation = self.environment.as_ref().map_or(DQuat::IDENTITY, |map| turn * map.rotation);
         let cameras = view::row(&self.camera, settings.views);
-        let views = |fog: &SceneFog| cameras.iter().map(|camera| fog.view(camera, aspect)).collect();
-        self.fog.as_ref().map_or(Vec::new(), views)
+        cameras.iter().map(|camera| fog.view(camera, aspect, rotation)).collect()
     }
 
     /// Turns the light and the sky of a declared frame; its plan stays.

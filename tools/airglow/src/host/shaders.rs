@@ -70,9 +70,21 @@ pub fn sky_vertex() -> Vec<u32> {
     module!("sky_vertex")
 }
 
-/// The fragment stage of the background.
-pub fn sky_fragment() -> Vec<u32> {
-    module!("sky_fragment")
+/// The fragment stage of the background; with `glow` seen through a medium.
+pub fn sky_fragment(glow: bool) -> Vec<u32> {
+    if glow { module!("sky_fragment.HOST_GLOW") } else { module!("sky_fragment") }
+}
+
+/// One triangle over a whole target.
+#[cfg(feature = "fog")]
+pub fn rectangle_vertex() -> Vec<u32> {
+    module!("rectangle")
+}
+
+/// The fragment stage of depth fog.
+#[cfg(feature = "fog")]
+pub fn depth_fog_fragment() -> Vec<u32> {
+    module!("depth_fog")
 }
 
 /// Samples to picture.

@@ -18,7 +18,7 @@ use super::controls::{Action, Controls, Drag};
 use super::surface::ShownWindow;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::renderer::{Compiled, Renderer, Settings};
+use crate::host::renderer::{Air, Compiled, Renderer, Settings};
 
 /// Frames that the times in the title are medians of.
 const TIMED_FRAMES: usize = 60;
@@ -130,7 +130,7 @@ impl<'d> Viewer<'d> {
             size: [desc.extent[0], desc.extent[1]],
             exposure: self.show.start.exposure * self.controls.exposure(),
             without_relight: self.controls.without_relight,
-            without_fog: self.controls.without_fog,
+            air: Air::with_fog(!self.controls.without_fog),
             window: Some(desc),
             ..self.show.start
         };

@@ -40,11 +40,11 @@ pub struct Picture {
 impl Picture {
     /// The scene's camera and lamps over a floor at height 0.
     pub fn new(device: &Device<'_>, scene: &Scene) -> Outcome<Self> {
-        let fog = SceneFog::new(device.context(), scene, vk::Format::R32G32B32A32_SFLOAT)?;
+        let fog = SceneFog::new(device, scene, None, vk::Format::R32G32B32A32_SFLOAT)?;
         let Some(fog) = fog else {
             return Err(Failure::input("the scene has no medium; give it a [medium]"));
         };
-        let mut view = fog.view(&scene.camera(), 1.0);
+        let mut view = fog.view(&scene.camera(), 1.0, glam::DQuat::IDENTITY)?;
         if view.lights.is_empty() || view.world.depth.orthographic {
             return Err(Failure::input("the scene needs point or spot lights and a perspective camera"));
         }
