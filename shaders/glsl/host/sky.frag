@@ -27,5 +27,9 @@ void main()
     vec3 d = mat3(frame.map_from_world) * direction;
     float u = atan(d.x, -d.z) / (2.0 * PI) + 0.5;
     float v = atan(length(d.xz), d.y) / PI;
-    radiance = vec4(textureLod(sampler2D(environment, environment_sampler), vec2(u, v), 0.0).rgb, 1.0);
+    vec3 seen = textureLod(sampler2D(environment, environment_sampler), vec2(u, v), 0.0).rgb;
+#if HOST_GLOW
+    seen = medium.left.rgb * seen + textureLod(sampler2D(glow, environment_sampler), vec2(u, v), 0.0).rgb;
+#endif
+    radiance = vec4(seen, 1.0);
 }

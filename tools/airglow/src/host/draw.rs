@@ -210,15 +210,7 @@ impl Pipelines {
                 record_draw(recorder, resources, pipeline, draw, &bound, map, colours)?;
             }
             if let Some(environment) = &scene.environment {
-                recorder.bind_graphics(
-                    &sky,
-                    &[
-                        Binding::uniform(0, &view),
-                        Binding::sampled(1, environment.map.clone()),
-                        Binding::sampler(2, &environment.sampler),
-                    ],
-                )?;
-                recorder.draw(0..3, 0..1)?;
+                sky.record(recorder, &view, environment, glow.as_ref())?;
             }
             recorder.end_rendering()
         }));

@@ -57,7 +57,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     // It becomes the light that leaves each vertex, once for all views: by the pass, or from an array that the host
     // brings.
     let (bytes, time) = (renderer.relight_bytes, renderer.relight_seconds);
-    let mut rotations = None;
+    let (filter, mut rotations) = (filter(renderer, settings), None);
     let colours = match &mut renderer.lighting {
         Lighting::Relight(lit) if !settings.without_relight => {
             let light = match (environment, &renderer.environment) {
@@ -77,6 +77,9 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             });
             let frame = Frame { light, instances: instances.collect(), target: None };
             let relit = lit.relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
+            if let (Some(rotations), Some(factors)) = (&relit.rotations, &filter) {
+                rotations.set_filter(factors).map_err(Failure::work)?;
+            }
             rotations = relit.rotations;
             let ranges = relit.ranges.iter().map(|range| (range.offset, range.size)).collect();
             relit.results.map(|buffer| VertexColours { buffer, ranges })

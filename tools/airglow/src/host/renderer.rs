@@ -302,7 +302,7 @@ impl<'d> Renderer<'d> {
             shared.set(view);
         }
         #[cfg(feature = "fog")]
-        for (control, view) in turning.fog.iter().zip(self.fog_views(settings)) {
+        for (control, view) in turning.fog.iter().zip(self.fog_views(settings, turn)?) {
             control.set(&view).map_err(Failure::work)?;
         }
         match (&turning.rotations, &self.environment, &self.lighting) {
