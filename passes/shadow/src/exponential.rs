@@ -192,7 +192,7 @@ pub(crate) fn without_mean(f: &[f64]) -> f64 {
 }
 
 impl Exponential {
-    fn check(self) -> Result<(), ShadowError> {
+    pub(crate) fn check(self) -> Result<(), ShadowError> {
         let (degree, norm) = match self {
             Self::Series { degree } | Self::ScaledSeries { degree } => (degree, 1.0),
             Self::Horner { degree, norm } => (degree, norm),

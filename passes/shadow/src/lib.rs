@@ -18,19 +18,37 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod bench;
+mod blockers;
 pub mod circle;
+mod clusters;
+mod counts;
+mod declare;
 mod eigen;
 mod error;
+pub mod eval;
 pub mod exponential;
 pub mod families;
+pub mod kernels;
 mod linear;
 mod logarithm;
 mod order;
 pub mod reference;
+mod settings;
+mod shadow;
+mod table;
 
+pub use bench::Bench;
+pub use blockers::{Blockers, MAX_SPHERES};
 pub use circle::{Cap, Sphere};
+pub use clusters::{CLUSTER, NOBODY};
+pub use counts::Counts;
+pub use declare::Shadowed;
 pub use error::ShadowError;
 pub use exponential::{Evaluator, Exponential};
 pub use linear::Linear;
 pub use logarithm::{CLIP, Logarithm};
 pub use order::{MAX_ORDER, MIN_ORDER, check_order};
+pub use settings::Settings;
+pub use shadow::{ACCESSES, Bindings, Receivers, Shadow};
+pub use table::Tables;

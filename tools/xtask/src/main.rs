@@ -12,6 +12,7 @@ mod header;
 mod manifest;
 mod mesh;
 mod portability;
+mod products;
 mod relief;
 mod room;
 mod room_lines;
@@ -67,6 +68,8 @@ enum Command {
     },
     /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
     Cloister,
+    /// Write shaders/glsl/shadow/product3.glsl to product6.glsl, products of spherical harmonics as straight-line code
+    Products,
     /// Make assets/mesh/street.glb, the scene of lamps in fog
     Street,
     /// Make assets/normalmap and the meshes of the two scenes that show it, grooves.glb and weave.glb
@@ -92,6 +95,7 @@ fn run(command: Command) -> Result<(), error::Error> {
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
         Command::Street => street::make(&workspace().join("assets")),
+        Command::Products => products::make(&glsl),
         Command::Relief => relief::make(&workspace().join("assets")),
         Command::Room { name, remove: false } => room::make(&workspace(), &name),
         Command::Room { name, remove: true } => room::remove(&workspace(), &name),

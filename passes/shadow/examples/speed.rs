@@ -1,0 +1,137 @@
+//! `cargo run --release -p airglow-shadow --example speed`: on the device that tests use, time and error of the sum of
+//! logarithms with one exponential, and of chained products, over 1 to 200 blockers at orders 3 to 6; time of each generated
+//! product and square, and how long the driver compiles each kernel.
+
+use std::time::Duration;
+
+use airglow_gpu::{GpuError, Recorder};
+use airglow_shadow::bench::{RowKernel, Scene, SphereKernel};
+use airglow_shadow::families::Random;
+use airglow_shadow::reference::{caps, rms, truth};
+use airglow_shadow::{Bench, Exponential, Settings, Shadow, ShadowError, Sphere};
+use airglow_tests::device::fixture_with;
+use glam::DVec3;
+
+/// Receivers of a scene: a square of ground.
+const RECEIVERS: usize = 8192;
+/// Runs of a frame; the least of them counts.
+const RUNS: usize = 15;
+/// Rows of a product.
+const ROWS: usize = 16_384;
+
+/// Ways in the table.
+fn ways() -> [(&'static str, SphereKernel, Exponential); 6] {
+    [
+        ("products", SphereKernel::Products, Exponential::Adaptive),
+        ("logarithm alone", SphereKernel::Logarithm, Exponential::Adaptive),
+        ("default", SphereKernel::Pass, Exponential::Adaptive),
+        ("PS*-2", SphereKernel::Pass, Exponential::ScaledSeries { degree: 2 }),
+        ("squares", SphereKernel::Pass, Exponential::Horner { degree: 2, norm: 0.25 }),
+        ("OL", SphereKernel::Pass, Exponential::OptimalLinear),
+    ]
+}
+
+/// Spheres of a standing figure, 1.8 m tall, sixty by default: legs, body, arms and head as rows of spheres.
+fn figure(count: usize) -> Vec<Sphere> {
+    let mut random = Random::new(count as u32);
+    let limbs = [
+        ([0.15, 0.1, 0.0], [0.1, 0.9, 0.05], 0.09),
+        ([-0.15, 0.1, 0.1], [-0.1, 0.9, -0.05], 0.09),
+        ([0.0, 0.9, 0.0], [0.0, 1.45, 0.0], 0.17),
+        ([0.2, 1.4, 0.0], [0.35, 0.8, 0.15], 0.06),
+        ([-0.2, 1.4, 0.0], [-0.35, 0.8, -0.15], 0.06),
+        ([0.0, 1.55, 0.0], [0.0, 1.75, 0.0], 0.11),
+    ];
+    let sphere = |i: usize| {
+        let (from, to, radius) = limbs[i % limbs.len()];
+        let place = DVec3::from_array(from).lerp(DVec3::from_array(to), random.unit());
+        Sphere { center: place + 0.02 * random.direction(), radius: radius * (0.8 + 0.4 * random.unit()) }
+    };
+    (0..count).map(sphere).collect()
+}
+
+fn ground() -> Vec<[f32; 3]> {
+    let side = RECEIVERS.isqrt();
+    (0..RECEIVERS)
+        .map(|i| {
+            [4.0 * (i % side) as f32 / side as f32 - 2.0, 0.0, 4.0 * (i / side) as f32 / side as f32 - 2.0]
+        })
+        .collect()
+}
+
+fn least(times: &[Duration]) -> f64 {
+    times.iter().skip(1).map(Duration::as_secs_f64).fold(f64::INFINITY, f64::min)
+}
+
+fn main() -> Result<(), ShadowError> {
+    let fixture = fixture_with(&Shadow::requirements());
+    let run = |record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>| {
+        fixture.device().run(fixture.context(), |recorder| record(recorder))
+    };
+    let bench = Bench { context: fixture.context(), run: &run };
+    products(&bench)?;
+    let positions = ground();
+    for order in 3..=6 {
+        for count in [1, 5, 15, 60, 200] {
+            scene(&bench, order, &figure(count), &positions)?;
+        }
+    }
+    Ok(())
+}
+
+/// Time of products and squares.
+fn products(bench: &Bench<'_>) -> Result<(), ShadowError> {
+    println!("order  kernel   ns a row   first run, ms (driver's compiler)");
+    for order in 3..=6 {
+        let rows: Vec<f32> = (0..ROWS * order * order)
+            .map(|i| if i % (order * order) == 0 { 3.5 } else { ((i * 37 % 101) as f32 - 50.0) * 1e-5 })
+            .collect();
+        for (name, kernel) in
+            [("product", RowKernel::Product as fn(u32) -> RowKernel), ("square", RowKernel::Square)]
+        {
+            let (_, one) = bench.rows(order, kernel(1), &rows, RUNS)?;
+            let (_, many) = bench.rows(order, kernel(9), &rows, RUNS)?;
+            let each = (least(&many) - least(&one)) / (8 * ROWS) as f64;
+            println!("{order}      {name:8} {:8.1}   {:8.1}", 1e9 * each, 1e3 * one[0].as_secs_f64());
+        }
+    }
+    Ok(())
+}
+
+/// Every way over one scene: time, first run, error over 64 receivers.
+fn scene(
+    bench: &Bench<'_>,
+    order: usize,
+    spheres: &[Sphere],
+    positions: &[[f32; 3]],
+) -> Result<(), ShadowError> {
+    let scene = Scene { positions, normals: None, spheres };
+    let probes: Vec<usize> = (0..64).map(|i| i * positions.len() / 64 + 17 * i % 90).collect();
+    let truths = probes
+        .iter()
+        .map(|&at| truth(order, 200, &caps(spheres, DVec3::from_array(positions[at].map(f64::from)))))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut chained = f64::NAN;
+    println!(
+        "order {order}, {} spheres, {} receivers: ns a receiver, products over it, first run ms, RMS error",
+        spheres.len(),
+        positions.len()
+    );
+    for (name, kernel, exponential) in ways() {
+        let settings = Settings { order, exponential, reach: 0.0, clamp: false, ..Default::default() };
+        let frame = bench.spheres(settings, kernel, &scene, RUNS)?;
+        let time = least(&frame.times) / positions.len() as f64;
+        if kernel == SphereKernel::Products {
+            chained = time;
+        }
+        let width = order * order;
+        let wide = |at: usize| {
+            frame.values[at * width..(at + 1) * width].iter().map(|v| f64::from(*v)).collect::<Vec<_>>()
+        };
+        let error = probes.iter().zip(&truths).map(|(&at, truth)| rms(&wide(at), truth)).sum::<f64>() / 64.0;
+        let first = 1e3 * frame.times[0].as_secs_f64();
+        let error = if kernel == SphereKernel::Logarithm { "-".to_owned() } else { format!("{error:.5}") };
+        println!("  {name:16} {:9.1}  {:6.2}  {first:8.1}  {error}", 1e9 * time, chained / time);
+    }
+    Ok(())
+}
