@@ -1,20 +1,20 @@
-//! Distant light through a medium: the environment as it is seen (Sun, thesis (2008), section 3.6.4), and by bands as it
-//! lights (section 3.6.5). The fog takes it for a sphere of small lights that are all at one distance.
+//! An environment as it is seen through a medium: its convolution with the point spread function (Sun, thesis (2008),
+//! section 3.6.4).
 
-use airglow_gpu::ash::vk::{self, BufferUsageFlags};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use airglow_gpu::ash::vk::{self, BufferUsageFlags, ImageLayout};
 use airglow_gpu::{
     Binding, BindingDesc, BindingKind, Blend, Buffer, ColorAttachment, ComputePipeline, ComputePipelineDesc,
-    Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, ImageView, Label, Load, Location, Recorder,
-    Rendering,
+    Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Image, ImageView, Imports, Label, Load,
+    Location, Record, Recorder, Rendering,
 };
-use airglow_graph::{Access, BufferDesc};
-use airglow_math::MathError;
+use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::distant::Distant;
 use crate::error::check;
-use crate::medium::Medium;
-use crate::reference::spread;
 use crate::{FogError, kernels};
 
 /// Bindings of the kernels of the background: the environment, the pyramid of its parts.
@@ -24,113 +24,15 @@ pub const BACKGROUND_BINDINGS: [BindingDesc; 2] =
 /// How many of its radii a part of the map must be away to be taken as one: see the room's README for what it errs.
 const AWAY: f32 = 2.0;
 
-/// The medium between a scene and its environment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distant {
-    /// Optical distance of the environment, red, green and blue, from 0 on.
-    pub optical_distance: [f64; 3],
-    /// Scattering albedo, 0 to 1.
-    pub albedo: [f64; 3],
-}
-
-impl Distant {
-    /// An environment `metres` away in a homogeneous medium.
-    ///
-    /// # Errors
-    /// [`FogError::Range`]; [`FogError::Kernel`] for a medium that thins with height.
-    pub fn new(medium: &Medium, metres: f64) -> Result<Self, FogError> {
-        medium.check()?;
-        check(|| "metres".to_owned(), metres, (0.0..=1e30).contains(&metres), "a distance from 0 on")?;
-        if medium.thinning.is_some() {
-            let (what, mend) = ("thins with height", "give a homogeneous one for distant light");
-            return Err(FogError::Kernel { what, mend });
-        }
-        let optical_distance = medium.extinction.map(|extinction| extinction * metres);
-        Ok(Self { optical_distance, albedo: medium.albedo })
-    }
-
-    /// What each band of an environment's spherical harmonics is multiplied with, for `order` bands: the attenuation plus
-    /// the point spread function's own factor (eq. 3.35 to 3.37). A zonal filter for relighting, which then costs no more
-    /// than in clear air.
-    ///
-    /// # Errors
-    /// [`FogError::Range`], [`FogError::Math`] for an order out of range.
-    pub fn band_factors(&self, order: usize) -> Result<Vec<[f64; 3]>, FogError> {
-        self.check()?;
-        let mut factors = vec![[0.0; 3]; order];
-        for channel in 0..3 {
-            let (optical, albedo) = (self.optical_distance[channel], self.albedo[channel]);
-            let same = (0..channel).find(|&other| self.optical_distance[other] == optical);
-            let spread = match same {
-                Some(other) if self.albedo[other] == albedo => {
-                    factors.iter_mut().for_each(|band| band[channel] = band[other]);
-                    continue;
-                }
-                _ => spread_factors(order, optical)?,
-            };
-            for (band, spread) in factors.iter_mut().zip(spread) {
-                band[channel] = (-optical).exp() + albedo * spread;
-            }
-        }
-        Ok(factors)
-    }
-
-    /// The effective BRDF of a tabulated one (eq. 3.34): what answers the light of a lamp, straight, as `table` answers
-    /// its glow. `table` holds, for each outgoing direction, the order² coefficients of the BRDF over incident directions
-    /// of one channel; the result is in its layout.
-    ///
-    /// # Errors
-    /// [`FogError::Range`], [`FogError::Math`] for an order out of range or a table that is no whole number of
-    /// directions.
-    pub fn effective_brdf(&self, channel: usize, order: usize, table: &[f64]) -> Result<Vec<f64>, FogError> {
-        self.check()?;
-        let number = channel as f64;
-        check(|| "channel".to_owned(), number, channel < 3, "0, 1 or 2")?;
-        let factors = spread_factors(order, self.optical_distance[channel])?;
-        let mut effective = Vec::with_capacity(table.len());
-        for coefficients in table.chunks(order * order) {
-            effective.extend(spread::effective_brdf(&factors, coefficients)?);
-        }
-        effective.iter_mut().for_each(|value| *value *= self.albedo[channel]);
-        Ok(effective)
-    }
-
-    /// Refuses what is out of range.
-    ///
-    /// # Errors
-    /// [`FogError::Range`] with the field.
-    pub fn check(&self) -> Result<(), FogError> {
-        for value in self.optical_distance {
-            check(
-                || "optical_distance".to_owned(),
-                value,
-                (0.0..=1e36).contains(&value),
-                "a number from 0 on",
-            )?;
-        }
-        for value in self.albedo {
-            check(|| "albedo".to_owned(), value, (0.0..=1.0).contains(&value), "a number from 0 to 1")?;
-        }
-        Ok(())
-    }
-}
-
-/// Factors of the point spread function alone; none is left of either where the light has no path or never arrives.
-fn spread_factors(order: usize, optical_distance: f64) -> Result<Vec<f64>, MathError> {
-    if optical_distance == 0.0 || optical_distance > 700.0 {
-        return spread::band_factors(order, |_| Ok(0.0));
-    }
-    spread::band_factors(order, |gamma| spread::exact(optical_distance, gamma))
-}
-
-/// Convolves environments of one size with the point spread function, for the eye: a map of their size, made once for
-/// an environment and a medium.
+/// Convolves environments of one size with the point spread function, for the eye: a map of any size, made once for an
+/// environment and a medium. Clones are the same one.
 #[derive(Clone)]
 pub struct Background {
     size: [u32; 2],
     parts: Buffer,
     reduce: ComputePipeline,
     gather: GraphicsPipeline,
+    made: Arc<Mutex<Option<Asked>>>,
 }
 
 /// Push constants of `background_parts.comp`.
@@ -166,8 +68,19 @@ pub enum Seen {
     Glow,
 }
 
+/// What a map is to be made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// The medium before the environment.
+    pub distant: Distant,
+    /// What the map holds.
+    pub seen: Seen,
+    /// A number that the host changes with the environment.
+    pub version: u64,
+}
+
 impl Background {
-    /// For maps of `size` texels; the result is of `format`.
+    /// For environments of `size` texels; the result is of `format`.
     ///
     /// # Errors
     /// [`FogError::Range`] for a side of 0 or above the device's limit, [`FogError::Gpu`] when the device refuses.
@@ -200,10 +113,65 @@ impl Background {
             colors: &[format],
             blend: Blend::None,
         })?;
-        Ok(Self { size, parts: context.create_buffer(label, &desc, Location::Device)?, reduce, gather })
+        let parts = context.create_buffer(label, &desc, Location::Device)?;
+        Ok(Self { size, parts, reduce, gather, made: Arc::default() })
     }
 
-    /// Records the convolution of an equirectangular `environment` into `target`, of any size. The environment is to be
+    /// Adds `map`, the one image of the host's that this background is kept in, to a graph, to be sampled by fragment
+    /// shaders; and, where it does not hold what is asked yet, the passes `fog background parts` and `fog background`
+    /// that make it of the equirectangular `environment`. They are on record as left out else: a frame that has made it
+    /// is declared anew after.
+    ///
+    /// # Errors
+    /// [`FogError::Range`].
+    pub fn add(
+        &self,
+        graph: &mut Graph<Record>,
+        imports: &mut Imports,
+        environment: Handle<graph::Image>,
+        map: &Image,
+        asked: Asked,
+    ) -> Result<Handle<graph::Image>, FogError> {
+        asked.distant.check()?;
+        let sampled = State::from(Access::FragmentSampled);
+        let kept = *self.lock() == Some(asked);
+        let entry = if kept { sampled } else { State { layout: ImageLayout::UNDEFINED, ..sampled } };
+        let target = graph.import_image("fog background", *map.desc(), entry, sampled);
+        imports.image(&target, map);
+        if kept {
+            graph.leave_out(LeftOut {
+                what: "fog background".to_owned(),
+                why: "neither the environment nor the medium before it has changed".to_owned(),
+                bytes: 0,
+                time: None,
+                would_return: "another environment or medium".to_owned(),
+            });
+            return Ok(target);
+        }
+        let read = Access::FragmentStorageRead;
+        let parts = graph.import_buffer("fog background parts", *self.parts.desc(), read, read);
+        imports.buffer(&parts, &self.parts);
+        let mut pass = graph.pass("fog background parts", PassKind::Compute);
+        pass.read(&environment, Access::ComputeSampled);
+        let parts = pass.write(parts, Access::ComputeStorageWrite);
+        let ours = self.clone();
+        pass.record(Box::new(move |recorder, resources| {
+            ours.reduce(recorder, &ours.bound(&resources.view(&environment)?))
+        }));
+        let mut pass = graph.pass("fog background", PassKind::Graphics);
+        pass.read(&environment, Access::FragmentSampled).read(&parts, read);
+        let target = pass.write(target, Access::ColorAttachmentWrite);
+        let ours = self.clone();
+        pass.record(Box::new(move |recorder, resources| {
+            let bound = ours.bound(&resources.view(&environment)?);
+            ours.gather(recorder, &bound, &resources.view(&target)?, &asked.distant, asked.seen)?;
+            *ours.lock() = Some(asked);
+            Ok(())
+        }));
+        Ok(target)
+    }
+
+    /// Records, without a graph, the convolution of an equirectangular `environment` into `target`, of any size. The environment is to be
     /// readable by compute and fragment shaders ([`Access::ComputeSampled`], [`Access::FragmentSampled`]), the target
     /// ready as a colour attachment; barriers between its own steps are made here.
     ///
@@ -218,19 +186,35 @@ impl Background {
         seen: Seen,
     ) -> Result<(), FogError> {
         distant.check()?;
-        let bound = [Binding::sampled(0, environment.clone()), Binding::storage(1, &self.parts)];
+        let bound = self.bound(environment);
+        self.reduce(recorder, &bound)?;
+        recorder.memory_barrier(Access::ComputeStorageWrite, Access::FragmentStorageRead)?;
+        self.gather(recorder, &bound, target, distant, seen).map_err(FogError::Gpu)
+    }
+
+    fn bound(&self, environment: &ImageView) -> [Binding; 2] {
+        [Binding::sampled(0, environment.clone()), Binding::storage(1, &self.parts)]
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Asked>> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The pyramid, level by level.
+    fn reduce(&self, recorder: &mut Recorder<'_>, bound: &[Binding]) -> Result<(), GpuError> {
         let (mut first, mut below) = (0, 0);
         for level in 1..=levels(self.size) {
-            recorder.bind_compute(&self.reduce, &bound)?;
+            if level > 1 {
+                recorder.memory_barrier(Access::ComputeStorageWrite, Access::ComputeStorageRead)?;
+            }
+            recorder.bind_compute(&self.reduce, bound)?;
             recorder.push_constants(&LevelConstants { size: self.size, level, first, below })?;
             let [width, height] = self.size.map(|side| side.div_ceil(1 << level).div_ceil(8));
             recorder.dispatch([width, height, 1])?;
-            recorder.memory_barrier(Access::ComputeStorageWrite, Access::ComputeStorageRead)?;
             below = first;
             first += parts(self.size, level) as u32;
         }
-        recorder.memory_barrier(Access::ComputeStorageWrite, Access::FragmentStorageRead)?;
-        self.gather(recorder, &bound, target, distant, seen).map_err(FogError::Gpu)
+        Ok(())
     }
 
     fn gather(

@@ -8,7 +8,7 @@
 //! a convolution, smooth enough for three bands of spherical harmonics. It is the part of eq. 3.30 (Sun, thesis (2008))
 //! that lies before the surface.
 
-use crate::background::Distant;
+use crate::distant::Distant;
 use crate::error::check;
 use crate::{FogError, Medium};
 

@@ -12,7 +12,7 @@ use crate::beam::{Beam, Region};
 use crate::camera::Rays;
 use crate::settings::MAX_LIGHTS;
 
-/// Pixels along a side of a tile: README.md has what other sides cost.
+/// Pixels along a side of a tile: a whole number of waves, and few enough tiles for the host to make lists of each frame.
 pub const TILE: u32 = 64;
 
 /// What the tiles of a draw need.

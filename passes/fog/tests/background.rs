@@ -4,17 +4,19 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
 mod images;
+mod maps;
 
 use std::f64::consts::{PI, TAU};
 
 use airglow_fog::reference::environment::factors;
 use airglow_fog::reference::spread::exact;
 use airglow_fog::{
-    Background, Camera, Distant, Environment, Fog, Frame, Medium, Prepared, Preset, Seen, Settings, View,
+    Asked, Background, Camera, Distant, Environment, Fog, Frame, Medium, Prepared, Preset, Seen, Settings,
+    View,
 };
-use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
-use airglow_gpu::{Image, Label, Location};
-use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+use airglow_gpu::open::{FrameLoop, FrameSemaphores};
+use airglow_gpu::{Execution, Image, Imports, Record};
+use airglow_graph::{Access, Graph, PassKind, State};
 use airglow_math::World;
 use airglow_math::sh;
 use airglow_math::sphere::equirect;
@@ -37,37 +39,64 @@ fn environment() -> Vec<[f32; 4]> {
 
 fn fogged(fixture: &Fixture, distant: &Distant) -> Vec<[f32; 4]> {
     let context = fixture.context();
-    let image = |name, usage| -> Image {
-        let desc = ImageDesc { usage, ..ImageDesc::new_2d(WIDTH, HEIGHT, Format::R32G32B32A32_SFLOAT) };
-        context.create_image(Label::new("test", name), &desc).unwrap()
-    };
-    let map = image("environment", ImageUsageFlags::SAMPLED | ImageUsageFlags::TRANSFER_DST);
-    let target = image("fogged", ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC);
-    let desc = BufferDesc { size: 16 * u64::from(WIDTH * HEIGHT), usage: BufferUsageFlags::TRANSFER_SRC };
-    let staging = context.create_buffer(Label::new("test", "texels"), &desc, Location::Upload).unwrap();
-    staging.write(0, &environment()).unwrap();
-    let background = Background::new(context, [WIDTH, HEIGHT], Format::R32G32B32A32_SFLOAT).unwrap();
-    let mut copy = None;
-    fixture
-        .device()
-        .run(context, |recorder| {
-            let (view, target_view) = (map.full_view()?, target.full_view()?);
-            recorder.transition(&map, State::idle(ImageLayout::UNDEFINED), Access::TransferDestination)?;
-            recorder.copy_buffer_to_image(&staging, &view)?;
-            recorder.transition(&map, Access::TransferDestination, Access::ComputeSampled)?;
-            recorder.memory_barrier(Access::TransferDestination, Access::FragmentSampled)?;
-            recorder.transition(
-                &target,
-                State::idle(ImageLayout::UNDEFINED),
-                Access::ColorAttachmentWrite,
-            )?;
-            background.record(recorder, &view, &target_view, distant, Seen::Whole).unwrap();
-            recorder.transition(&target, Access::ColorAttachmentWrite, Access::TransferSource)?;
-            copy = Some(recorder.read_back_image(&target_view)?);
-            Ok(())
-        })
-        .unwrap();
+    let map = maps::uploaded(fixture, [WIDTH, HEIGHT], &environment());
+    let target = maps::target(fixture, [WIDTH, HEIGHT]);
+    let background = Background::new(context, [WIDTH, HEIGHT], maps::FORMAT).unwrap();
+    let drawn = Access::ColorAttachmentWrite;
+    let run = fixture.device().run(context, |recorder| {
+        recorder.transition(&target, State::UNDEFINED, drawn)?;
+        background.record(recorder, &map.full_view()?, &target.full_view()?, distant, Seen::Whole).unwrap();
+        recorder.transition(&target, drawn, Access::TransferSource)
+    });
+    run.unwrap();
+    read(fixture, &target)
+}
+
+/// The texels of an image that is ready to be copied from.
+fn read(fixture: &Fixture, image: &Image) -> Vec<[f32; 4]> {
+    let copy =
+        fixture.device().run(fixture.context(), |recorder| recorder.read_back_image(&image.full_view()?));
     copy.unwrap().read::<[f32; 4]>().unwrap()
+}
+
+#[test]
+fn a_map_is_made_once_for_an_environment_and_a_medium() {
+    let fixture = fixture_with(&Fog::requirements(&Settings::default()));
+    let context = fixture.context();
+    let map = maps::uploaded(&fixture, [WIDTH, HEIGHT], &environment());
+    let target = maps::target(&fixture, [WIDTH, HEIGHT]);
+    let background = Background::new(context, [WIDTH, HEIGHT], maps::FORMAT).unwrap();
+    let thin = Distant { optical_distance: [0.5; 3], albedo: [1.0; 3] };
+    let thick = Distant { optical_distance: [2.0; 3], ..thin };
+    let asked = |distant, version| Asked { distant, seen: Seen::Whole, version };
+    let frames = [asked(thin, 1), asked(thin, 1), asked(thick, 1), asked(thick, 2), asked(thick, 2)];
+    let mut passes = Vec::new();
+    for asked in frames {
+        let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
+        let sampled = Access::ComputeSampled;
+        let environment = graph.import_image("environment", *map.desc(), sampled, sampled);
+        imports.image(&environment, &map);
+        let seen = background.add(&mut graph, &mut imports, environment, &target, asked).unwrap();
+        let mut pass = graph.pass("host", PassKind::Graphics);
+        pass.side_effect().read(&seen, Access::FragmentSampled).record(Box::new(|_, _| Ok(())));
+        let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
+        assert_eq!(plan.left_out().is_empty(), plan.steps().len() == 3, "{}", plan.text());
+        passes.push(plan.steps().len() - 1);
+        let mut execution = Execution::prepare(context, plan).unwrap();
+        let mut frames = FrameLoop::new(fixture.device(), context).unwrap();
+        let recorded = frames.frame(FrameSemaphores::default(), |commands| {
+            // SAFETY: the loop's command buffer is recording and submitted once; imports are in their entry states.
+            unsafe { execution.record(context, commands, &imports, None) }
+        });
+        recorded.unwrap();
+        frames.finish().unwrap();
+    }
+    assert_eq!(passes, [2, 0, 2, 2, 0]);
+    let run = fixture.device().run(context, |recorder| {
+        recorder.transition(&target, Access::FragmentSampled, Access::TransferSource)
+    });
+    run.unwrap();
+    assert_eq!(read(&fixture, &target), fogged(&fixture, &thick), "by both roads");
 }
 
 fn middle(x: u32, y: u32) -> DVec3 {

@@ -140,6 +140,26 @@ mod tests {
     }
 
     #[test]
+    fn factorisation_is_no_better_than_stated() {
+        let (mut most, mut shares) = (0.0_f64, Vec::new());
+        for t in (1..=30).map(|i| 0.1 * f64::from(i)) {
+            let mut share = 0.0_f64;
+            for gamma in (0..=30).map(|i| 0.1 * (10.0 * PI).powf(f64::from(i) / 30.0)) {
+                let (exact, factored) = (exact(t, gamma).unwrap(), factored(t, gamma).unwrap());
+                most = most.max((exact - factored).abs());
+                share = share.max((factored / exact - 1.0).abs());
+            }
+            shares.push(share);
+        }
+        let largest = shares.iter().fold(0.0, |a: f64, &b| a.max(b));
+        println!(
+            "eq. 3.32 beside 3.30 from 0.1 rad on, T 0.1 to 3: {most:.3} 1/sr, worst {:.0} %",
+            100.0 * largest
+        );
+        assert!(most < 0.1 && largest > 0.5, "{most} {largest}");
+    }
+
+    #[test]
     fn convolution_spreads_a_small_light_as_its_glow() {
         let (order, optical) = (5, 0.8);
         let factors = band_factors(order, |gamma| exact(optical, gamma)).unwrap();
