@@ -36,6 +36,7 @@ mod order;
 pub mod reference;
 mod settings;
 mod shadow;
+pub mod spheres;
 mod table;
 
 pub use bench::Bench;
