@@ -12,6 +12,8 @@ pub use airglow_graph as graph;
 pub use airglow_math as math;
 #[cfg(feature = "normals")]
 pub use airglow_normals as normals;
+#[cfg(feature = "radiance")]
+pub use airglow_radiance as radiance;
 #[cfg(feature = "relight")]
 pub use airglow_relight as relight;
 #[cfg(feature = "shadow")]

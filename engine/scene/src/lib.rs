@@ -50,7 +50,7 @@ pub use environment::Environment;
 pub use error::SceneError;
 pub use files::write_atomically;
 pub use image::{Encoding, FloatImage, Image, luminance, srgb_decode, srgb_encode};
-pub use light::{Blocker, Emitter, Light, LightKind, Medium, VISIBILITY_CONTRAST};
+pub use light::{Blocker, Emitter, EmitterShape, Light, LightKind, Medium, VISIBILITY_CONTRAST};
 pub use material::{AlphaMode, IDENTITY_UV, LAMBERT_ROUGHNESS, Material, MaterialClass, Texture, Wrap};
 pub use mesh::{ContentHash, Mesh};
 pub use scene::{Instance, Scene};

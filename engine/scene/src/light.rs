@@ -50,17 +50,32 @@ pub enum LightKind {
     },
 }
 
-/// A glowing sphere near the surfaces, from a scene file.
+/// A glowing sphere or box near the surfaces, from a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emitter {
     /// For people.
     pub name: String,
     /// Metres, world space.
     pub center: [f32; 3],
-    /// Metres, positive.
-    pub radius: f32,
+    /// Its shape about the centre.
+    pub shape: EmitterShape,
     /// Radiance of its surface, W/sr/m2, not negative.
     pub radiance: [f32; 3],
+}
+
+/// Shape of an [`Emitter`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EmitterShape {
+    /// A sphere.
+    Sphere {
+        /// Metres, positive.
+        radius: f32,
+    },
+    /// A box along the axes of the world.
+    Box {
+        /// Metres along x, y and z, positive.
+        size: [f32; 3],
+    },
 }
 
 /// A sphere that stops light without being drawn, from a scene file.

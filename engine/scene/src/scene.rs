@@ -39,7 +39,7 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// What fills the space between the surfaces.
     pub medium: Option<Medium>,
-    /// Glowing spheres near the surfaces.
+    /// Glowing spheres and boxes near the surfaces.
     pub emitters: Vec<Emitter>,
     /// Spheres that only cast shadows.
     pub blockers: Vec<Blocker>,

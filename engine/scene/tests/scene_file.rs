@@ -5,7 +5,8 @@
 mod support;
 
 use airglow_scene::{
-    Exposure, FloatImage, LightKind, Quality, Scene, SceneError, Shadow, Storage, image_io, load,
+    EmitterShape, Exposure, FloatImage, LightKind, Quality, Scene, SceneError, Shadow, Storage, image_io,
+    load,
 };
 use glam::Vec3;
 use support::{full_model, put};
@@ -57,6 +58,11 @@ fn every_table_arrives() {
         radius = 0.1
         radiance = [10, 5, 1]
 
+        [[emitter]]
+        center = [0, 1, 0]
+        size = [1, 0.5, 0.25]
+        radiance = 2
+
         [[blocker]]
         name = "ball"
         center = [0, 0, 0]
@@ -102,6 +108,8 @@ fn every_table_arrives() {
     let medium = scene.medium.unwrap();
     assert!((medium.extinction[1] - 0.01).abs() < 1e-5, "{medium:?}: ln 50 / 391.2 is 0.01");
     assert_eq!((medium.albedo, medium.anisotropy), ([0.9; 3], 0.7));
+    assert_eq!(scene.emitters[0].shape, EmitterShape::Sphere { radius: 0.1 });
+    assert_eq!(scene.emitters[1].shape, EmitterShape::Box { size: [1.0, 0.5, 0.25] });
     assert_eq!((scene.emitters[0].radiance, scene.blockers[0].name.as_str()), ([10.0, 5.0, 1.0], "ball"));
     assert_eq!(scene.camera().position(), Vec3::new(0.0, 0.0, 5.0));
     assert_eq!(scene.exposure, Exposure::Fixed { scale: 0.5 });
@@ -133,6 +141,7 @@ fn faults_carry_line_and_column() {
         ("[medium]\nvisibility = 3\nanisotropy = 1.0", 3, "from -0.999 to 0.999"),
         ("[medium]\nextinction = [1, -1, 0]", 2, "three of them: [red, green, blue]"),
         ("[[emitter]]\ncenter = [0, nan, 0]\nradius = 1\nradiance = 1", 2, "a finite number expected"),
+        ("[[emitter]]\ncenter = [0, 0, 0]\nradiance = 1", 1, "either a radius"),
         ("[environment]\nfile = 'sky.exr'\nrotation = { yaw = 1, degrees = 2 }", 3, "a rotation is"),
         ("[camera]\nfrom = [0, 0, 0]\nto = [0, 1, 0]", 1, "not only along up"),
         ("[camera]\nname = 'other'", 2, "no camera \"other\" in the glTF files; they have []"),

@@ -10,7 +10,7 @@ use super::values::{
     Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Vector, ViewDegrees,
 };
 use crate::exposure::scale_of_ev;
-use crate::light::{Blocker, Emitter, Medium};
+use crate::light::{Blocker, Emitter, EmitterShape, Medium};
 use crate::material::{Material, MaterialClass};
 use crate::settings::{Exposure, Quality, Shadow, Storage};
 
@@ -132,12 +132,37 @@ impl TryFrom<MediumFields> for MediumTable {
 
 /// `[[emitter]]`.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "EmitterFields")]
 pub(super) struct EmitterTable {
     name: Option<String>,
     center: Vector,
-    radius: Positive,
+    shape: EmitterShape,
     radiance: Rgb,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EmitterFields {
+    name: Option<String>,
+    center: Vector,
+    radius: Option<Positive>,
+    size: Option<[Positive; 3]>,
+    radiance: Rgb,
+}
+
+impl TryFrom<EmitterFields> for EmitterTable {
+    type Error = &'static str;
+
+    fn try_from(fields: EmitterFields) -> Result<Self, Self::Error> {
+        let shape = match (fields.radius, fields.size) {
+            (Some(radius), None) => EmitterShape::Sphere { radius: radius.0 },
+            (None, Some(size)) => EmitterShape::Box { size: size.map(|side| side.0) },
+            _ => {
+                return Err("an emitter has either a radius (m) of a sphere or the size (m, three) of a box");
+            }
+        };
+        Ok(Self { name: fields.name, center: fields.center, shape, radiance: fields.radiance })
+    }
 }
 
 impl EmitterTable {
@@ -145,7 +170,7 @@ impl EmitterTable {
         Emitter {
             name: self.name.unwrap_or_else(|| format!("emitter {index}")),
             center: Vec3::from(self.center).into(),
-            radius: self.radius.0,
+            shape: self.shape,
             radiance: self.radiance.into(),
         }
     }

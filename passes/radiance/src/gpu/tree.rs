@@ -35,13 +35,18 @@ pub fn nodes(hierarchy: &Hierarchy, oracle: Oracle) -> Vec<DeviceNode> {
         unused: 0,
     };
     let mut nodes: Vec<_> = hierarchy.nodes().iter().map(node).collect();
-    // Halves lie behind their node.
-    for parent in (0..nodes.len()).rev() {
-        for half in hierarchy.children(parent).into_iter().flatten() {
-            let far = hierarchy.nodes()[parent].point().distance(hierarchy.nodes()[half].point());
-            let bound = rounded_up(far + f64::from(nodes[half].bound));
-            nodes[parent].bound = nodes[parent].bound.max(bound);
+    // The nodes above one are those whose range of nodes holds it.
+    let mut above: Vec<usize> = Vec::new();
+    for below in 0..nodes.len() {
+        while above.last().is_some_and(|node| below >= node + 2 * nodes[*node].count as usize - 1) {
+            above.pop();
         }
+        let (centre, domain) = (hierarchy.nodes()[below].point(), OVERLAP * f64::from(nodes[below].reach));
+        for node in &above {
+            let bound = rounded_up(hierarchy.nodes()[*node].point().distance(centre) + domain);
+            nodes[*node].bound = nodes[*node].bound.max(bound);
+        }
+        above.push(below);
     }
     nodes
 }

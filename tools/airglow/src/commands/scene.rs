@@ -88,6 +88,8 @@ impl SceneOptions {
             let environment = airglow_scene::image_io::read_environment(path).map_err(Failure::input)?;
             scene.environment = Some(environment);
         }
+        #[cfg(all(feature = "radiance", feature = "relight"))]
+        crate::host::near::place(&mut scene);
         let quality = &mut scene.quality;
         *quality = Quality {
             order: self.order.unwrap_or(quality.order),

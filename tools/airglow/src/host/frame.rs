@@ -27,8 +27,11 @@ pub struct Declared {
 
 /// What changes from frame to frame while the plan stays.
 pub struct Turning {
-    /// Rotations of the light; `None` where nothing is relit.
+    /// Rotations of the light; `None` where nothing is relit, and where near emitters light each vertex.
     pub rotations: Option<Rotations>,
+    /// The lights of the radiance pass, where there is one.
+    #[cfg(feature = "radiance")]
+    pub near: Option<airglow::radiance::Control>,
     /// The views, which turn with the light.
     pub views: Vec<SharedView>,
     /// The fog pass of each view that has one.
@@ -58,6 +61,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     // brings.
     let (bytes, time) = (renderer.relight_bytes, renderer.relight_seconds);
     let (filter, mut rotations) = (filter(renderer, settings), None);
+    #[cfg(feature = "radiance")]
+    let mut near = None;
     let colours = match &mut renderer.lighting {
         Lighting::Relight(lit) if !settings.without_relight => {
             let light = match (environment, &renderer.environment) {
@@ -75,7 +80,20 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
                 orientation,
                 ..Instance::new(lit.meshes[instance.transfer])
             });
-            let frame = Frame { light, instances: instances.collect(), target: None };
+            #[cfg_attr(
+                not(feature = "radiance"),
+                expect(unused_mut, reason = "only near emitters change it")
+            )]
+            let mut frame = Frame { light, instances: instances.collect(), target: None };
+            #[cfg(feature = "radiance")]
+            if let Some(emitters) = &lit.near {
+                // Near emitters first make the light of each vertex, the environment's with it.
+                let sampled = emitters.add(&mut graph, &mut imports, settings.turn)?;
+                frame.light = if sampled.light.is_empty() { Light::None } else { Light::Vertices };
+                let lights = frame.instances.iter_mut().zip(sampled.light);
+                lights.for_each(|(instance, light)| instance.light = Some(light));
+                near = sampled.control;
+            }
             let relit = lit.relight.add(context, &mut graph, &mut imports, &frame).map_err(Failure::work)?;
             if let (Some(rotations), Some(factors)) = (&relit.rotations, &filter) {
                 rotations.set_filter(factors).map_err(Failure::work)?;
@@ -170,6 +188,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
 /// What a medium before the environment does to the bands of its light, where there is one.
 #[cfg(feature = "fog")]
+            #[cfg(feature = "radiance")]
+            near,
 fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec<[f64; 3]>> {
     let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
     Some(fog.sky.as_ref()?.factors.clone())

@@ -47,6 +47,9 @@ pub(super) struct Lit {
     pub(super) relight: Relight,
     pub(super) meshes: Vec<MeshId>,
     pub(super) instances: Vec<InstanceTransfer>,
+    /// The light of near emitters, where the scene has them.
+    #[cfg(feature = "radiance")]
+    pub(super) near: Option<super::near::NearLight>,
 }
 
 /// Colours of all vertices that the host computed itself.
@@ -59,19 +62,19 @@ pub(super) struct HostColours {
 impl Source {
     /// The pass with its transfer, baked or found in `cache`, or nothing where the pass has nothing to do.
     pub fn of_scene(scene: &Scene, without_relight: bool, cache: &Path, output: &Output) -> Outcome<Self> {
-        match (&scene.environment, without_relight) {
+        match (is_lit(scene), without_relight) {
             (_, true) => Ok(Self::Even(Reason::Asked)),
-            (None, false) => Ok(Self::Even(Reason::NoEnvironment)),
-            (Some(_), false) => transfer::of_scene(scene, &scene.quality, cache, output).map(Self::Relight),
+            (false, false) => Ok(Self::Even(Reason::NoEnvironment)),
+            (true, false) => transfer::of_scene(scene, &scene.quality, cache, output).map(Self::Relight),
         }
     }
 
     /// The same without a bake, for plans alone.
     pub fn unbaked(scene: &Scene, without_relight: bool) -> Outcome<Self> {
-        match (&scene.environment, without_relight) {
+        match (is_lit(scene), without_relight) {
             (_, true) => Ok(Self::Even(Reason::Asked)),
-            (None, false) => Ok(Self::Even(Reason::NoEnvironment)),
-            (Some(_), false) => transfer::unbaked(scene).map(Self::Relight),
+            (false, false) => Ok(Self::Even(Reason::NoEnvironment)),
+            (true, false) => transfer::unbaked(scene).map(Self::Relight),
         }
     }
 
@@ -88,12 +91,23 @@ impl Source {
             Self::Relight(_) => Relight::requirements(&relight_settings(scene)),
             Self::Colours(_) | Self::Even(_) => Requirements::engine(),
         };
+        #[cfg(feature = "radiance")]
+        let requirements = requirements.and(&super::near::requirements(scene));
         #[cfg(feature = "fog")]
         let requirements = requirements.and(&super::fog::requirements(scene));
         #[cfg(feature = "normals")]
         let requirements = requirements.and(&super::mapped::requirements(scene));
         requirements
     }
+}
+
+/// Whether a scene has light for the relight pass.
+fn is_lit(scene: &Scene) -> bool {
+    #[cfg(feature = "radiance")]
+    let near = super::near::is_drawn(scene);
+    #[cfg(not(feature = "radiance"))]
+    let near = false;
+    scene.environment.is_some() || near
 }
 
 impl Lighting {
@@ -118,7 +132,13 @@ impl Lit {
             let mesh = relight.add_mesh(context, &account.name, count, Some(&transfer.coefficients));
             meshes.push(mesh.map_err(Failure::work)?);
         }
-        Ok(Self { relight, meshes, instances: transfer.instances.clone() })
+        Ok(Self {
+            relight,
+            meshes,
+            instances: transfer.instances.clone(),
+            #[cfg(feature = "radiance")]
+            near: super::near::NearLight::new(context, scene, transfer)?,
+        })
     }
 
     /// How each instance stands to the space its transfer is in.
@@ -153,6 +173,11 @@ fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
         storage: match scene.quality.storage {
             Storage::F32 => RelightStorage::F32,
             Storage::F16 => RelightStorage::F16,
+        },
+        #[cfg(feature = "radiance")]
+        light: match super::near::is_drawn(scene) {
+            true => airglow::relight::LightKind::Vertex,
+            false => airglow::relight::LightKind::Uniform,
         },
         ..airglow::relight::Settings::default()
     }

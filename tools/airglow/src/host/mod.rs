@@ -2,8 +2,8 @@
 //!
 //! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
 //! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws, `lights`, `fog` and `mapped` what they take of the scene's lights, medium and normal maps; `renderer`
-//! owns it all.
+//! draws, `lights`, `fog`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near emitters;
+//! `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
 pub mod device;
@@ -25,6 +25,8 @@ pub mod lighting;
 pub mod lights;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod mapped;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod near;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;

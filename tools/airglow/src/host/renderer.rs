@@ -305,6 +305,12 @@ impl<'d> Renderer<'d> {
         for (control, view) in turning.fog.iter().zip(self.fog_views(settings, turn)?) {
             control.set(&view).map_err(Failure::work)?;
         }
+        #[cfg(feature = "radiance")]
+        if let (Some(control), Lighting::Relight(lit)) = (&turning.near, &self.lighting)
+            && let Some(near) = &lit.near
+        {
+            near.turn(control, turn)?;
+        }
         match (&turning.rotations, &self.environment, &self.lighting) {
             (Some(rotations), Some(map), Lighting::Relight(lit)) => {
                 rotations.set(turn * map.rotation, &lit.orientations()).map_err(Failure::work)

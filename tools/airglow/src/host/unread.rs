@@ -14,10 +14,14 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     let drawn = |_: &Material| false;
     let unread = |material: &&Material| material.normal_texture.is_some() && !drawn(material);
     let normal_textures = scene.materials.iter().filter(unread).count();
+    #[cfg(all(feature = "radiance", feature = "relight"))]
+    let emitters = if super::near::is_drawn(scene) { 0 } else { scene.emitters.len() };
+    #[cfg(not(all(feature = "radiance", feature = "relight")))]
+    let emitters = scene.emitters.len();
     let kinds = [
         (scene.lights.len().saturating_sub(MAX_LIGHTS), "further lights", "fewer lights: a draw takes 64"),
         (usize::from(scene.medium.is_some() && !cfg!(feature = "fog")), "media", "the room of the fog pass"),
-        (scene.emitters.len(), "near emitters", "a pass that samples their radiance"),
+        (emitters, "near emitters", "the room of the radiance pass, and 3 to 6 bands"),
         (scene.blockers.len(), "blockers", "a pass that casts their shadows"),
         (
             normal_textures,
