@@ -31,6 +31,10 @@ use crate::output::Output;
   fog-psf         t_sv, gamma -> psf                    also method (exact, factored)
   normals         level, x, y, lx, ly, lz, vx, vy, vz, brdf -> radiance   --set map=FILE; brdf (lambert, blinn:n,
                   ggx:a); also method (vmf:1, vmf:2, vmf:4, vmf:6; default is vmf:4)
+  sh-circle       order, theta -> visibility, log       blocker about +Z; zonal, order values each
+  sh-log          order, g -> f                         eigenvalues clipped at 0.02 of the largest
+  sh-exp          order, f -> g                         also method (default, exact, ol, hyb:T, psN, pssN)
+  shadow-spheres  order, px, py, pz, spheres -> visibility   x;y;z;r each; also method (as sh-exp, or products)
 
 Example:
   printf 'order,f,qx,qy,qz,qw\\n2,1;0;0.5;0,0,1,0,1\\n' > rows.csv
@@ -74,6 +78,18 @@ pub enum Evaluator {
     /// The radiance of a texel of a normal map's level.
     #[cfg(feature = "normals")]
     Normals,
+    /// Visibility of a circle of directions and its logarithm.
+    #[cfg(feature = "shadow")]
+    ShCircle,
+    /// The logarithm of a function in spherical harmonics.
+    #[cfg(feature = "shadow")]
+    ShLog,
+    /// The exponential of a function in spherical harmonics.
+    #[cfg(feature = "shadow")]
+    ShExp,
+    /// What spheres leave a point to see.
+    #[cfg(feature = "shadow")]
+    ShadowSpheres,
 }
 
 impl Evaluator {
@@ -90,6 +106,14 @@ impl Evaluator {
             Self::FogPsf => &["t_sv", "gamma"],
             #[cfg(feature = "normals")]
             Self::Normals => &["level", "x", "y", "lx", "ly", "lz", "vx", "vy", "vz", "brdf"],
+            #[cfg(feature = "shadow")]
+            Self::ShCircle => &["order", "theta"],
+            #[cfg(feature = "shadow")]
+            Self::ShLog => &["order", "g"],
+            #[cfg(feature = "shadow")]
+            Self::ShExp => &["order", "f"],
+            #[cfg(feature = "shadow")]
+            Self::ShadowSpheres => &["order", "px", "py", "pz", "spheres"],
         }
     }
 
@@ -106,6 +130,14 @@ impl Evaluator {
             Self::FogPsf => &["psf"],
             #[cfg(feature = "normals")]
             Self::Normals => &["radiance"],
+            #[cfg(feature = "shadow")]
+            Self::ShCircle => &["visibility", "log"],
+            #[cfg(feature = "shadow")]
+            Self::ShLog => &["f"],
+            #[cfg(feature = "shadow")]
+            Self::ShExp => &["g"],
+            #[cfg(feature = "shadow")]
+            Self::ShadowSpheres => &["visibility"],
         }
     }
 
@@ -117,6 +149,8 @@ impl Evaluator {
             Self::FogAirlight | Self::FogSurface | Self::FogPsf => &["method"],
             #[cfg(feature = "normals")]
             Self::Normals => &["map"],
+            #[cfg(feature = "shadow")]
+            Self::ShCircle | Self::ShLog | Self::ShExp | Self::ShadowSpheres => &[],
         }
     }
 }
@@ -167,6 +201,20 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::Normals => {
                 let bench = airglow::normals::Bench { context: device.context(), run: &run };
                 eval::normals::normals(&bench, &table, &settings)
+            }
+            #[cfg(feature = "shadow")]
+            Evaluator::ShCircle => eval::shadow::circle(&table),
+            #[cfg(feature = "shadow")]
+            Evaluator::ShLog => eval::shadow::logarithm(&table),
+            #[cfg(feature = "shadow")]
+            Evaluator::ShExp => {
+                let bench = airglow::shadow::Bench { context: device.context(), run: &run };
+                eval::shadow::exponential(&bench, &table)
+            }
+            #[cfg(feature = "shadow")]
+            Evaluator::ShadowSpheres => {
+                let bench = airglow::shadow::Bench { context: device.context(), run: &run };
+                eval::shadow::spheres(&bench, &table)
             }
         }
     })?;

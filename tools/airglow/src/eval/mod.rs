@@ -7,6 +7,8 @@ pub mod normals;
 pub mod number;
 #[cfg(feature = "relight")]
 pub mod relight;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod shadow;
 pub mod table;
 
 use std::collections::BTreeMap;

@@ -83,7 +83,7 @@ impl Table {
     }
 
     /// The text of a cell without the spaces around it, or `otherwise` where it is empty or its column is absent.
-    #[cfg(any(feature = "fog", feature = "normals"))]
+    #[cfg(any(feature = "fog", feature = "normals", feature = "shadow"))]
     pub fn word<'a>(&'a self, row: usize, column: &str, otherwise: &'a str) -> Result<&'a str, String> {
         let word = self.cell(row, column)?.trim();
         Ok(if word.is_empty() { otherwise } else { word })
