@@ -2037,6 +2037,31 @@ AirglowStatus airglow_prepared_turn(const struct AirglowPrepared *prepared,
                                     struct AirglowError *error);
 
 /**
+ * Shows (1) or hides (0) an instance of a prepared frame, and says whether its dynamic visibility blocks anything (1) or
+ * not (0); it counts from the next recording on. Nothing is recorded for what is away, and the frame stays as it is.
+ * Results of a hidden instance are not to be read.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_prepared_show(const struct AirglowPrepared *prepared,
+                                    size_t instance,
+                                    uint32_t shown,
+                                    uint32_t shadowed,
+                                    struct AirglowError *error);
+
+/**
+ * Puts the light of a prepared frame on (1) or out (0), from the next recording on. While it is out nothing is recorded:
+ * results are not to be read, all is black.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_prepared_set_lit(const struct AirglowPrepared *prepared,
+                                       uint32_t lit,
+                                       struct AirglowError *error);
+
+/**
  * Drops a prepared frame. Null is nothing.
  *
  * The caller promises:

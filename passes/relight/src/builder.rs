@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use airglow_graph::{Access, BufferDesc, LeftOut, PassKind, ResourceDesc, State};
 
-use crate::control::{Once, Rotations, Shown};
+use crate::control::{Once, Rotations};
 use crate::frame::ResultRange;
 use crate::resident::{Resident, Upload};
+use crate::shown::Shown;
 use crate::stage::{Need, Prepared, Resource, Stage, Use, Work};
 
 /// A frame while its stages are collected.
@@ -45,7 +46,7 @@ impl Builder {
         once: Option<Once>,
     ) {
         let uses = uses.into_iter().map(|(resource, access)| Use { resource, access }).collect();
-        self.stages.push(Stage { name, kind, uses, before: Vec::new(), work, once });
+        self.stages.push(Stage { name, kind, uses, before: Vec::new(), work, once, shown: None });
     }
 
     pub(crate) fn leave_out(&mut self, what: &str, why: &str, bytes: u64, would_return: &str) {
@@ -60,6 +61,7 @@ impl Builder {
         rotations: Option<Rotations>,
         shown: Shown,
     ) -> Prepared {
+        self.stages.iter_mut().for_each(|stage| stage.shown = Some(shown.clone()));
         if !self.uploads.is_empty() {
             let (resources, uploads): (Vec<_>, Vec<_>) =
                 std::mem::take(&mut self.uploads).into_iter().unzip();

@@ -1,7 +1,6 @@
-//! What changes from frame to frame without a new plan: rotations, pre-exposure, a filter of the light, and
-//! whether the environment is projected.
+//! What of the light changes from frame to frame without a new plan: rotations, pre-exposure, a filter, and whether the
+//! environment is projected.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use airglow_math::World;
@@ -46,7 +45,7 @@ impl Rotations {
     /// One fixed rotation by a unit quaternion.
     pub(crate) fn fixed(rotation: DQuat) -> Self {
         let frame = LightFrame { orientation: Orientation::IDENTITY, factor: 1.0, filter: OPEN };
-        let turns = vec![Turn::rotation(rotation)];
+        let turns = vec![Turn::new(rotation, false)];
         Self { current: Arc::new(Mutex::new(Current { frame, turns, order: MAX_ORDER })) }
     }
 
@@ -75,9 +74,7 @@ impl Rotations {
     /// [`RelightError::Math`] for any other number; nothing is changed then.
     pub fn set_pre_exposure(&self, factor: f64) -> Result<(), RelightError> {
         World { pre_exposure: factor, ..World::default() }.check()?;
-        let mut current = lock(&self.current);
-        current.frame.factor = factor;
-        current.scale();
+        lock(&self.current).frame.factor = factor;
         Ok(())
     }
 
@@ -101,51 +98,13 @@ impl Rotations {
             return Err(RelightError::Values { name, what, problem, count, first });
         }
         current.frame.filter[..factors.len()].copy_from_slice(factors);
-        current.scale();
         Ok(())
     }
 
-    /// Reads the turns from the light to the object space of each instance.
-    pub(crate) fn with<T>(&self, read: impl FnOnce(&[Turn]) -> T) -> T {
-        read(&lock(&self.current).turns)
-    }
-}
-
-impl Current {
-    /// Puts factor and filter into every turn.
-    fn scale(&mut self) {
-        let LightFrame { factor, filter, .. } = self.frame;
-        self.turns.iter_mut().for_each(|turn| turn.scale(factor, &filter));
-    }
-}
-
-/// Which instances of a prepared frame are shown. Nothing is recorded for the vertices of one that is hidden: its
-/// results are not to be read. Hiding and showing changes no plan, makes no pipeline and allocates nothing.
-#[derive(Clone, Debug)]
-pub struct Shown(Arc<[AtomicBool]>);
-
-impl Shown {
-    /// All are shown.
-    pub(crate) fn all(instances: usize) -> Self {
-        Self((0..instances).map(|_| AtomicBool::new(true)).collect())
-    }
-
-    /// Shows or hides an instance, by its index in the frame, from the next recording on.
-    ///
-    /// # Errors
-    /// [`RelightError::Size`] for an index past the instances.
-    pub fn set(&self, instance: usize, shown: bool) -> Result<(), RelightError> {
-        let Some(flag) = self.0.get(instance) else {
-            let allowed = format!("below {}", self.0.len());
-            let (name, what) = ("the frame".to_owned(), "an index of an instance");
-            return Err(RelightError::Size { name, what, actual: instance as u64, allowed });
-        };
-        flag.store(shown, Ordering::Relaxed);
-        Ok(())
-    }
-
-    pub(crate) fn is(&self, instance: u32) -> bool {
-        self.0.get(instance as usize).is_some_and(|flag| flag.load(Ordering::Relaxed))
+    /// Reads the turns from the light to the object space of each instance, and what the frame does to the light.
+    pub(crate) fn with<T>(&self, read: impl FnOnce(&[Turn], &LightFrame) -> T) -> T {
+        let current = lock(&self.current);
+        read(&current.turns, &current.frame)
     }
 }
 

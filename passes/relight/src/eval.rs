@@ -13,7 +13,7 @@ use crate::RelightError;
 use crate::bench::{Bench, Texels};
 use crate::envelope::compute;
 use crate::kernels;
-use crate::rotation::{Turn, normalised};
+use crate::rotation::{OPEN, RotateConstants, Turn, normalised};
 use crate::settings::MAX_ORDER;
 use crate::stage::Pair;
 use crate::tables::tensor;
@@ -88,7 +88,7 @@ pub fn sh_rotate(bench: &Bench<'_>, rows: &[RotateRow]) -> Result<Rows<Evaluated
             let vectors: Vec<[f32; 4]> = (places.iter())
                 .flat_map(|&i| rows[i].f.iter().map(|value| [*value as f32, 0.0, 0.0, 0.0]))
                 .collect();
-            let turns = places.iter().map(|&i| Ok(Turn::rotation(normalised(rows[i].rotation)?)));
+            let turns = places.iter().map(|&i| Ok(Turn::new(normalised(rows[i].rotation)?, false)));
             let turns: Vec<Turn> = turns.collect::<Result<_, RelightError>>()?;
             let [source, turns] = [bench.buffer("vectors", &vectors)?, bench.buffer("turns", &turns)?];
             let rotated = bench.scratch("rotated", BufferDesc::new(source.size()))?;
@@ -96,7 +96,7 @@ pub fn sh_rotate(bench: &Bench<'_>, rows: &[RotateRow]) -> Result<Rows<Evaluated
                 [Binding::storage(0, &source), Binding::storage(1, &turns), Binding::storage(2, &rotated)];
             let values = bench.run(|recorder| {
                 recorder.bind_compute(&pipeline, &bound)?;
-                recorder.push_constants(&Pair::new(count, count))?;
+                recorder.push_constants(&RotateConstants::new(Pair::new(count, count), 1.0, &OPEN))?;
                 recorder.dispatch([places.len() as u32, 1, 1])?;
                 recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
                 recorder.read_back_buffer(&rotated)

@@ -6,9 +6,10 @@
 
 use glam::DQuat;
 
-use crate::control::{Rotations, Shown};
+use crate::control::Rotations;
 use crate::mesh::MeshId;
 use crate::rotation::Orientation;
+use crate::shown::Shown;
 
 /// An equirectangular environment: linear Rec. 709 radiance, W/sr/m2, constant on each texel, the centre looking
 /// forward, u growing to the right, v down, whatever the axes of the host's world.
@@ -70,6 +71,11 @@ impl<B> Instance<B> {
     #[must_use]
     pub fn new(mesh: MeshId) -> Self {
         Self { mesh, orientation: Orientation::IDENTITY, light: None, visibility: None, normals: None }
+    }
+
+    /// Whether it brings dynamic visibility.
+    pub(crate) fn is_shadowed(&self) -> bool {
+        self.visibility.is_some()
     }
 }
 

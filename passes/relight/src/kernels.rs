@@ -14,6 +14,7 @@ use modules::{
     ROTATE,
 };
 
+use crate::rotation::RotateConstants;
 use crate::settings::{LightKind, Output, Settings, Storage};
 
 pub(crate) use source::Source;
@@ -128,7 +129,7 @@ pub(crate) fn rotate(order: usize) -> Kernel {
         name: "relight rotate",
         spirv: ROTATE[order - 1],
         bindings: const { &[read(0), read(1), write(2)] },
-        push_constant_size: 8,
+        push_constant_size: size_of::<RotateConstants>() as u32,
     }
 }
 

@@ -6,7 +6,7 @@ use airglow_graph::{Access, ImageDesc, PassKind, ResourceDesc, State};
 
 use crate::RelightError;
 use crate::builder::Builder;
-use crate::control::{Once, Rotations, Shown};
+use crate::control::{Once, Rotations};
 use crate::envelope::LightPipelines;
 use crate::frame::{Environment, Frame, Instance, Light, ResultRange};
 use crate::mesh::Mesh;
@@ -14,6 +14,7 @@ use crate::pack::RECTANGLE_WIDTH;
 use crate::relight::{RECTANGLE_FORMAT, Relight, alignment};
 use crate::rotation::{LightFrame, Orientation};
 use crate::settings::{LightKind, Method, Output};
+use crate::shown::Shown;
 use crate::stage::{Need, Pair, Prepared, Resource, Work};
 use crate::tables::map_frame;
 
@@ -29,7 +30,8 @@ fn read_anywhere() -> State {
 impl Relight {
     /// The frame as data, for a host without our graph: provide what [`Prepared::needs`] lists, then
     /// [`Prepared::record`]. It may be recorded again in later frames while meshes, light and sizes stay;
-    /// [`Prepared::rotations`] turns light and instances in between, [`Prepared::shown`] hides instances.
+    /// [`Prepared::rotations`] turns light and instances in between, [`Prepared::shown`] hides instances, their dynamic
+    /// visibility, or all light.
     ///
     /// # Errors
     /// [`RelightError::Instance`] and [`RelightError::Settings`] for inputs that the settings do not allow,
@@ -41,7 +43,11 @@ impl Relight {
         frame: &Frame<B, I>,
     ) -> Result<Prepared, RelightError> {
         let mut builder = Builder::default();
-        let (ranges, shown) = (self.ranges(frame)?, Shown::all(frame.instances.len()));
+        let ranges = self.ranges(frame)?;
+        let incident = self.settings.output == Output::Incident;
+        let baked = |instance: &Instance<B>| self.meshes.get(instance.mesh).is_ok_and(Mesh::has_vectors);
+        let flags = |instance| (Instance::<B>::is_shadowed(instance), incident && baked(instance));
+        let shown = Shown::all(frame.instances.iter().map(flags));
         let total = ranges.last().map_or(0, |range| range.offset + range.size);
         if frame.instances.is_empty() {
             builder.leave_out("relight", "the frame has no instance of a mesh", 0, "an instance");
@@ -149,7 +155,7 @@ impl Relight {
         let bytes = u64::from(instances) * stride;
         let incident = self.settings.output == Output::Incident;
         let baked = |instance: &Instance<B>| self.meshes.get(instance.mesh).is_ok_and(Mesh::has_vectors);
-        let shadowed = |instance: &Instance<B>| instance.visibility.is_some() || incident && baked(instance);
+        let shadowed = |instance: &Instance<B>| instance.is_shadowed() || incident && baked(instance);
         if !frame.instances.iter().any(shadowed) {
             let why =
                 if incident { "no instance has visibility" } else { "no instance has dynamic visibility" };

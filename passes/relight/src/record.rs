@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use airglow_gpu::{Binding, BufferSlice, ColorAttachment, GpuError, ImageView, Load, Recorder, Rendering};
 use airglow_graph::Access;
 
-use crate::control::Shown;
 use crate::kernels::WORKGROUP;
 use crate::pack::RECTANGLE_WIDTH;
+use crate::rotation::RotateConstants;
+use crate::shown::Shown;
 use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Use, Work};
 
 /// The resources of a frame: the host's, and the scratch a host without a graph makes.
@@ -126,6 +127,9 @@ impl Stage {
     }
 
     fn record_once(&self, recorder: &mut Recorder<'_>, found: Found<'_>) -> Result<(), GpuError> {
+        if self.shown.as_ref().is_some_and(|shown| !self.work.is_asked_for(shown)) {
+            return Ok(());
+        }
         let Some(once) = &self.once else { return self.record_work(recorder, found) };
         if once.projected.holds(once.revision) {
             return Ok(());
@@ -166,15 +170,17 @@ impl Stage {
                 recorder.dispatch([*coefficients, 1, 1])
             }
             Work::Rotate { pipeline, source, target, rotations, strides } => {
-                let (turns, count) =
-                    rotations.with(|turns| Ok::<_, GpuError>((recorder.upload(turns)?, turns.len())))?;
+                let (turns, count, constants) = rotations.with(|turns, frame| {
+                    let constants = RotateConstants::new(*strides, frame.factor, &frame.filter);
+                    Ok::<_, GpuError>((recorder.upload(turns)?, turns.len(), constants))
+                })?;
                 let bound = [
                     Binding::storage(0, found.buffer(*source)?),
                     Binding::storage(1, &turns),
                     Binding::storage(2, found.buffer(*target)?),
                 ];
                 recorder.bind_compute(pipeline, &bound)?;
-                recorder.push_constants(strides)?;
+                recorder.push_constants(&constants)?;
                 recorder.dispatch([count as u32, 1, 1])
             }
             Work::Matrices { pipeline, elements, instances, strides } => {
@@ -201,12 +207,22 @@ impl Stage {
     }
 }
 
-/// Those of the instances that are shown.
+impl Work {
+    /// Whether there is anything to do in a frame.
+    fn is_asked_for(&self, shown: &Shown) -> bool {
+        match self {
+            Self::Matrices { .. } => shown.is_lit() && shown.takes_matrices(),
+            _ => shown.is_lit(),
+        }
+    }
+}
+
+/// Those of the instances that are shown, with the kernel for their visibility.
 fn shown_chunks<'a, P>(
     chunks: &'a [ChunkWork<P>],
     shown: &'a Shown,
 ) -> impl Iterator<Item = &'a ChunkWork<P>> {
-    chunks.iter().filter(|chunk| shown.is(chunk.instance))
+    chunks.iter().filter(|chunk| shown.takes(chunk.instance, chunk.shadowed))
 }
 
 /// Hands what a chunk binds to `bind`, on the stack: no kernel over vertices binds more than five.

@@ -5,6 +5,7 @@ use glam::{DMat3, DQuat};
 
 use crate::RelightError;
 use crate::settings::MAX_ORDER;
+use crate::stage::Pair;
 
 /// How far a matrix may be from a scaled rotation, relative to its scale.
 const TOLERANCE: f64 = 1e-4;
@@ -38,14 +39,18 @@ impl From<DQuat> for Orientation {
     }
 }
 
-/// A turn of light as `rotate.comp` takes it.
-#[repr(C)]
+/// A turn of light as `rotate.comp` takes it: a unit quaternion x, y, z, w. Of the two that are one rotation it is the
+/// one whose w is negative, be it negative zero, where an inversion follows.
+#[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Turn {
-    /// x, y, z, w, unit length.
-    pub quaternion: [f32; 4],
-    /// Of each band, red, green and blue; the fourth is the sign that an inversion gives the band.
-    pub factors: [[f32; 4]; MAX_ORDER],
+pub(crate) struct Turn([f32; 4]);
+
+impl Turn {
+    /// By a unit quaternion.
+    pub(crate) fn new(unit: DQuat, inverted: bool) -> Self {
+        let turn = unit.as_quat();
+        Self(if turn.w.is_sign_negative() == inverted { turn } else { -turn }.to_array())
+    }
 }
 
 /// What each band of a light is multiplied with, red, green and blue.
@@ -54,19 +59,19 @@ pub(crate) type Filter = [[f64; 3]; MAX_ORDER];
 /// Leaves every band as it is.
 pub(crate) const OPEN: Filter = [[1.0; 3]; MAX_ORDER];
 
-impl Turn {
-    /// By a unit quaternion.
-    pub(crate) fn rotation(unit: DQuat) -> Self {
-        Self { quaternion: unit.as_quat().to_array(), factors: [[1.0; 4]; MAX_ORDER] }
-    }
+/// Push constants of `rotate.comp`: nothing of a frame's factors is uploaded for each instance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct RotateConstants {
+    strides: Pair,
+    factors: [[f32; 3]; MAX_ORDER],
+}
 
-    /// The same with other factors of a light.
-    pub(crate) fn scale(&mut self, factor: f64, filter: &Filter) {
-        for (factors, band) in self.factors.iter_mut().zip(filter) {
-            let sign = factors[3];
-            let [red, green, blue] = band.map(|band| (factor * f64::from(sign) * band) as f32);
-            *factors = [red, green, blue, sign];
-        }
+impl RotateConstants {
+    /// With a factor on each band of a light.
+    pub(crate) fn new(strides: Pair, factor: f64, filter: &Filter) -> Self {
+        let factors = filter.map(|band| band.map(|channel| (factor * channel) as f32));
+        Self { strides, factors }
     }
 }
 
@@ -96,12 +101,7 @@ impl LightFrame {
     pub(crate) fn turn(&self, light: DQuat, instance: Orientation) -> Result<Turn, RelightError> {
         let rotation = object_space(light, instance.rotation)? * self.orientation.rotation;
         let inverted = instance.inverted != self.orientation.inverted;
-        let mut turn = Turn::rotation(rotation);
-        for (l, factors) in turn.factors.iter_mut().enumerate() {
-            factors[3] = Orientation { rotation, inverted }.band_sign(l) as f32;
-        }
-        turn.scale(self.factor, &self.filter);
-        Ok(turn)
+        Ok(Turn::new(rotation, inverted))
     }
 }
 

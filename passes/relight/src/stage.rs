@@ -5,9 +5,10 @@ use std::fmt;
 use airglow_gpu::{Buffer, ComputePipeline, GraphicsPipeline};
 use airglow_graph::{Access, LeftOut, PassKind, ResourceDesc, State};
 
-use crate::control::{Once, Rotations, Shown};
+use crate::control::{Once, Rotations};
 use crate::frame::ResultRange;
 use crate::resident::Upload;
+use crate::shown::Shown;
 
 /// What a stage uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -112,6 +113,8 @@ pub struct Stage {
     pub(crate) before: Vec<Option<Access>>,
     pub(crate) work: Work,
     pub(crate) once: Option<Once>,
+    /// What of the frame is shown; none where that is all one.
+    pub(crate) shown: Option<Shown>,
 }
 
 /// A frame as data, made by [`Relight::prepare`](crate::Relight::prepare).
@@ -127,7 +130,7 @@ pub struct Prepared {
     pub ranges: Vec<ResultRange>,
     /// The rotations, to be changed before the frame is recorded again; none for light of each vertex.
     pub rotations: Option<Rotations>,
-    /// Shows and hides instances before the frame is recorded again.
+    /// Shows and hides light, instances and their dynamic visibility before the frame is recorded again.
     pub shown: Shown,
 }
 
@@ -146,11 +149,21 @@ pub(crate) struct Bound {
 pub(crate) struct ChunkWork<P> {
     /// Whose vertices they are, by index in the frame.
     pub instance: u32,
+    /// Whether it applies dynamic visibility; an instance that has some has a kernel for frames in which it does nothing.
+    pub shadowed: bool,
     pub pipeline: P,
     pub bound: Vec<Bound>,
     pub constants: ChunkConstants,
-    /// Workgroups of a dispatch; a draw has none.
+    /// Workgroups of a dispatch; a draw does not read them.
     pub groups: u32,
+}
+
+impl ChunkWork<()> {
+    /// The same by a pipeline.
+    pub(crate) fn by<P>(self, pipeline: P) -> ChunkWork<P> {
+        let Self { instance, shadowed, pipeline: (), bound, constants, groups } = self;
+        ChunkWork { instance, shadowed, pipeline, bound, constants, groups }
+    }
 }
 
 /// The push constants of `chunk.glsl`.

@@ -7,7 +7,6 @@ use airglow_graph::{Access, PassKind};
 
 use crate::RelightError;
 use crate::builder::Builder;
-use crate::control::Shown;
 use crate::envelope::VertexPipeline;
 use crate::frame::{Frame, Instance, ResultRange};
 use crate::kernels::{self, Kernel, Source};
@@ -15,6 +14,7 @@ use crate::mesh::{Mesh, stride};
 use crate::pack::{Chunk, RECTANGLE_WIDTH};
 use crate::relight::Relight;
 use crate::settings::{LightKind, Method, Output};
+use crate::shown::Shown;
 use crate::stage::{Bound, ChunkConstants, ChunkWork, Resource, Work};
 
 impl Relight {
@@ -31,41 +31,35 @@ impl Relight {
         for (index, (instance, range)) in frame.instances.iter().zip(ranges).enumerate() {
             let mesh = self.meshes.get(instance.mesh)?;
             let source = self.source(index, instance, mesh)?;
-            let (kernel, pipeline) = self.kernel(source)?;
-            for binding in kernel.bindings {
-                let resource = resource(binding, source, index as u32, instance.mesh.index);
-                uses.insert(resource, binding.access);
-                self.need(builder, resource, mesh, binding.access);
-            }
-            for chunk in &mesh.chunks {
-                let bind = |binding| {
+            for source in [Some(source), source.unshadowed()].into_iter().flatten() {
+                let (kernel, pipeline) = self.kernel(source)?;
+                for binding in kernel.bindings {
                     let resource = resource(binding, source, index as u32, instance.mesh.index);
-                    self.bind(binding, resource, index as u32, mesh, chunk, range)
-                };
-                let bound = kernel.bindings.iter().map(bind).collect();
-                let first_row =
-                    (range.offset / 16 / u64::from(RECTANGLE_WIDTH)) as u32 + chunk.first / RECTANGLE_WIDTH;
-                let constants =
-                    ChunkConstants { vertex_count: chunk.count, stride: stride(chunk), first_row };
-                let groups = chunk.count.div_ceil(kernels::vertices_per_workgroup(&self.settings, source));
-                match pipeline.clone() {
-                    VertexPipeline::Compute(pipeline) => {
-                        compute.push(ChunkWork {
-                            instance: index as u32,
-                            pipeline,
-                            bound,
-                            constants,
-                            groups,
-                        });
-                    }
-                    VertexPipeline::Rectangle(pipeline) => {
-                        rectangle.push(ChunkWork {
-                            instance: index as u32,
-                            pipeline,
-                            bound,
-                            constants,
-                            groups: 0,
-                        });
+                    uses.insert(resource, binding.access);
+                    self.need(builder, resource, mesh, binding.access);
+                }
+                for chunk in &mesh.chunks {
+                    let bind = |binding| {
+                        let resource = resource(binding, source, index as u32, instance.mesh.index);
+                        self.bind(binding, resource, index as u32, mesh, chunk, range)
+                    };
+                    let bound = kernel.bindings.iter().map(bind).collect();
+                    let first_row = (range.offset / 16 / u64::from(RECTANGLE_WIDTH)) as u32
+                        + chunk.first / RECTANGLE_WIDTH;
+                    let constants =
+                        ChunkConstants { vertex_count: chunk.count, stride: stride(chunk), first_row };
+                    let at_once = kernels::vertices_per_workgroup(&self.settings, source);
+                    let work = ChunkWork {
+                        instance: index as u32,
+                        shadowed: source.is_shadowed(),
+                        pipeline: (),
+                        bound,
+                        constants,
+                        groups: chunk.count.div_ceil(at_once),
+                    };
+                    match pipeline.clone() {
+                        VertexPipeline::Compute(pipeline) => compute.push(work.by(pipeline)),
+                        VertexPipeline::Rectangle(pipeline) => rectangle.push(work.by(pipeline)),
                     }
                 }
             }

@@ -49,24 +49,40 @@ fn light(context: &Context, numbers: &mut Numbers) -> Buffer {
     buffer
 }
 
-/// Three instances of three meshes.
-fn instances<B>(context: &Context, relight: &mut Relight, numbers: &mut Numbers) -> Vec<Instance<B>> {
+/// Instances of a mesh each.
+fn instances<B>(
+    context: &Context,
+    relight: &mut Relight,
+    numbers: &mut Numbers,
+    vertices: &[u32],
+) -> Vec<Instance<B>> {
     let instance = |(i, &vertices): (usize, &u32)| {
         let vectors = numbers.values(16 * vertices as usize);
         let mesh = relight.add_mesh(context, &format!("mesh {i}"), vertices, Some(&vectors)).unwrap();
         Instance { orientation: DQuat::from_rotation_y(i as f64).into(), ..Instance::new(mesh) }
     };
-    VERTICES.iter().enumerate().map(instance).collect()
+    vertices.iter().enumerate().map(instance).collect()
 }
 
-fn build(context: &Context, relight: &mut Relight) -> Built {
+/// With dynamic visibility where `shadowed` says so.
+fn build(context: &Context, relight: &mut Relight, vertices: &[u32], shadowed: bool) -> Built {
     let mut numbers = Numbers::new(101);
     let buffer = light(context, &mut numbers);
     let (mut graph, mut imports) = (Graph::new(), Imports::new());
     let state = Access::ComputeStorageRead;
     let coefficients = graph.import_buffer("light", *buffer.desc(), state, state);
     imports.buffer(&coefficients, &buffer);
-    let instances = instances(context, relight, &mut numbers);
+    let mut instances = instances(context, relight, &mut numbers, vertices);
+    for (instance, vertices) in instances.iter_mut().zip(vertices).filter(|_| shadowed) {
+        let values = numbers.values(16 * *vertices as usize);
+        let desc = BufferDesc { size: 64 * u64::from(*vertices), usage: BufferUsageFlags::STORAGE_BUFFER };
+        let label = Label::new("host", "visibility");
+        let buffer = context.create_buffer(label, &desc, Location::Upload).unwrap();
+        buffer.write(0, &values).unwrap();
+        let visibility = graph.import_buffer("visibility", desc, state, state);
+        imports.buffer(&visibility, &buffer);
+        instance.visibility = Some(visibility);
+    }
     let light = Light::Uniform { coefficients, rotation: DQuat::IDENTITY };
     let frame: GraphFrame = Frame { light, instances, target: None };
     let Relit { results, ranges, shown, .. } =
@@ -90,6 +106,11 @@ fn build(context: &Context, relight: &mut Relight) -> Built {
 /// Frames with the large instance shown where `shown` says so: allocations after warm-up, and the median device time of
 /// a frame, seconds.
 fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -> (u64, f64) {
+    frames_with(fixture, built, |built, frame| built.shown.set(1, shown(frame)).unwrap())
+}
+
+/// Frames before each of which `change` is made.
+fn frames_with(fixture: &Fixture, built: &mut Built, change: impl Fn(&Built, usize)) -> (u64, f64) {
     let context = fixture.context();
     let passes = built.execution.plan().steps().len() as u32;
     let mut timing = Timing::new(context, passes, 0, KEPT).unwrap();
@@ -98,7 +119,7 @@ fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -
     for frame in 0..WARM_UP + 30 {
         let recorded = frames.frame(FrameSemaphores::default(), |commands| {
             let before = allocations();
-            built.shown.set(1, shown(frame)).unwrap();
+            change(built, frame);
             // SAFETY: the loop's command buffer is recording and submitted once; imports are in their entry states.
             let recorded =
                 unsafe { built.execution.record(context, commands, &built.imports, Some(&mut timing)) };
@@ -113,6 +134,12 @@ fn frames(fixture: &Fixture, built: &mut Built, shown: impl Fn(usize) -> bool) -
     timing.collect().unwrap();
     let times: Vec<f64> = timing.frames().map(|times| times.sum).collect();
     (counted, airglow_math::statistics::median(&times).unwrap())
+}
+
+/// Dispatches and draws of the frame recorded last, and the bytes they bind.
+fn work(built: &Built) -> (u64, u64) {
+    let counts = built.execution.counts().iter().copied().reduce(Counts::and).unwrap();
+    (counts.dispatches + counts.draws, counts.bound_bytes)
 }
 
 /// The results of the plan as it stands.
@@ -135,13 +162,9 @@ fn an_instance_that_comes_and_goes_costs_nothing_when_away() {
     let context = fixture.context();
     for method in [Method::Compute, Method::Fragment] {
         let mut relight = Relight::new(context, Settings { method, ..Settings::default() }).unwrap();
-        let mut built = build(context, &mut relight);
+        let mut built = build(context, &mut relight, &VERTICES, false);
         // The first frame copies the meshes to the device and gives their staging memory back.
         let whole = results(&fixture, &mut built);
-        let work = |built: &Built| {
-            let counts = built.execution.counts().iter().copied().reduce(Counts::and).unwrap();
-            (counts.dispatches + counts.draws, counts.bound_bytes)
-        };
         let made = context.pipelines_made();
         let (allocations, time) = frames(&fixture, &mut built, |_| true);
         let all = work(&built);
@@ -168,6 +191,60 @@ fn an_instance_that_comes_and_goes_costs_nothing_when_away() {
         built.shown.set(1, true).unwrap();
         assert!(results(&fixture, &mut built) == whole, "{method:?}: it came back otherwise");
         assert!(built.shown.set(3, true).unwrap_err().to_string().contains("below 3"));
+    }
+}
+
+#[test]
+fn shadows_and_light_that_are_away_cost_nothing() {
+    const SMALL: [u32; 2] = [500, 300];
+    let fixture = fixture();
+    let context = fixture.context();
+    for method in [Method::Compute, Method::Fragment] {
+        let settings = Settings { method, visibility: true, ..Settings::default() };
+        let mut relight = Relight::new(context, settings).unwrap();
+        let plain = results(&fixture, &mut build(context, &mut relight, &SMALL, false));
+        let mut built = build(context, &mut relight, &SMALL, true);
+        let whole = results(&fixture, &mut built);
+        let made = context.pipelines_made();
+        let of = |values: &[f32], range: ResultRange| {
+            values[range.offset as usize / 4..(range.offset + range.size) as usize / 4].to_vec()
+        };
+        let [first, second] = built.ranges[..] else { panic!("two instances") };
+
+        // One instance leaves the shadow: it gets the bits of a plan without, the other keeps its own.
+        built.shown.set_shadowed(0, false).unwrap();
+        let half = results(&fixture, &mut built);
+        assert!(
+            of(&half, first) == of(&plain, first) && of(&whole, first) != of(&plain, first),
+            "{method:?}"
+        );
+        assert!(of(&half, second) == of(&whole, second), "{method:?}");
+        let all = work(&built);
+
+        // The other, too: then there are no product matrices.
+        built.shown.set_shadowed(1, false).unwrap();
+        assert!(of(&results(&fixture, &mut built), second) == of(&plain, second), "{method:?}");
+        let open = work(&built);
+        assert_eq!(all.0 - open.0, 1, "{method:?}: {all:?} {open:?}");
+        assert!(all.1 - open.1 > 64 * u64::from(SMALL[1]), "{method:?}: {all:?} {open:?}");
+        let said = built.shown.left_out();
+        assert!(said.len() == 1 && said[0].what.contains("visibility of 2 of 2 instances"), "{said:?}");
+
+        // The light goes out: nothing is left to do, and it comes back as it was.
+        built.shown.set_lit(false);
+        let (allocations_out, _) = frames_with(&fixture, &mut built, |_, _| {});
+        assert_eq!(work(&built).0, 0, "{method:?}");
+        assert!(built.shown.left_out()[0].why.contains("the light is out"));
+        built.shown.set_lit(true);
+        [0, 1].iter().for_each(|instance| built.shown.set_shadowed(*instance, true).unwrap());
+        assert!(built.shown.left_out().is_empty());
+        assert!(results(&fixture, &mut built) == whole, "{method:?}: it came back otherwise");
+        let (allocations_changing, _) = frames_with(&fixture, &mut built, |built, frame| {
+            built.shown.set_lit(frame % 5 != 0);
+            built.shown.set_shadowed(frame % 2, frame % 3 == 0).unwrap();
+        });
+        assert_eq!([allocations_out, allocations_changing], [0; 2], "{method:?}");
+        assert_eq!(context.pipelines_made(), made, "{method:?}: a pipeline was made");
     }
 }
 
@@ -205,7 +282,7 @@ fn a_frame_without_a_graph_allocates_nothing_after_warm_up() {
         let mut numbers = Numbers::new(103);
         let mut relight = Relight::new(context, Settings { method, ..Settings::default() }).unwrap();
         let host = light(context, &mut numbers);
-        let instances = instances(context, &mut relight, &mut numbers);
+        let instances = instances(context, &mut relight, &mut numbers, &VERTICES);
         let light = Light::Uniform { coefficients: (), rotation: DQuat::IDENTITY };
         let frame: Frame<(), ()> = Frame { light, instances, target: None };
         let prepared = relight.prepare(context, &frame).unwrap();

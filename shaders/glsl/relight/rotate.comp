@@ -1,8 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Rotates SH RGB vectors by unit quaternions: rotated(s) = f(q^-1 s q), or f(-q^-1 s q) with an inversion, for
-// which Y_lm(-s) = (-1)^l Y_lm(s), each band times a factor. One workgroup a rotation: it makes the matrices of all bands
-// together, then each invocation makes one coefficient.
+// which Y_lm(-s) = (-1)^l Y_lm(s), each band times a factor. q and -q are one rotation, so the sign of w says whether
+// the inversion follows. One workgroup a rotation: it makes the matrices of all bands together, then each invocation
+// makes one coefficient.
 //
 // ORDER  1-6
 
@@ -14,24 +15,20 @@ layout(std430, set = 0, binding = 0) readonly buffer Source {
     vec4 coefficients[];
 } source;
 
-struct Turn {
-    vec4 quaternion; // x, y, z, w
-    vec4 factors[6]; // of each band, which an inversion makes negative where it is odd; w: that sign
-};
-
 layout(std430, set = 0, binding = 1) readonly buffer Turns {
-    Turn values[];
+    vec4 quaternions[]; // x, y, z, w; w below 0, and negative zero: with an inversion
 } turns;
 
 layout(std430, set = 0, binding = 2) buffer Rotated {
     vec4 coefficients[];
 } rotated;
 
-// Distances between two vectors, in vec4; a source distance of 0 rotates one vector by every quaternion.
-layout(push_constant) uniform Strides {
-    uint source;
-    uint rotated;
-} strides;
+layout(push_constant) uniform Frame {
+    // Distances between two vectors, in vec4; a source distance of 0 rotates one vector by every quaternion.
+    uint source_stride;
+    uint rotated_stride;
+    float factors[18]; // of each band, red, green and blue
+} frame;
 
 shared float rotation_elements[ORDER * (4 * ORDER * ORDER - 1) / 3];
 #define SH_ROTATION(i) rotation_elements[i]
@@ -54,14 +51,17 @@ void main()
 {
     uint i = gl_LocalInvocationID.x;
     uint which = gl_WorkGroupID.x;
-    sh_rotation_build(rotation_matrix(turns.values[which].quaternion), i, 64u);
+    vec4 quaternion = turns.quaternions[which];
+    sh_rotation_build(rotation_matrix(quaternion), i, 64u);
     if (i >= uint(COEFFICIENTS)) { return; }
     int l = sh_band(i);
     int m = int(i) - l * (l + 1);
     vec3 sum = vec3(0.0);
     for (int n = -l; n <= l; ++n) {
         uint index = uint(l * (l + 1) + n);
-        sum = fma(vec3(sh_rotation_at(l, m, n)), source.coefficients[which * strides.source + index].rgb, sum);
+        sum = fma(vec3(sh_rotation_at(l, m, n)), source.coefficients[which * frame.source_stride + index].rgb, sum);
     }
-    rotated.coefficients[which * strides.rotated + i] = vec4(turns.values[which].factors[l].rgb * sum, 0.0);
+    bool negated = floatBitsToUint(quaternion.w) >> 31 != 0u && l % 2 == 1;
+    vec3 factor = vec3(frame.factors[3 * l], frame.factors[3 * l + 1], frame.factors[3 * l + 2]);
+    rotated.coefficients[which * frame.rotated_stride + i] = vec4((negated ? -factor : factor) * sum, 0.0);
 }

@@ -66,8 +66,7 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
         assert!(plan(&good).contains("fog airlight"), "{}", plan(&good));
         let chosen = AirglowFogSettings { preset: 2, ..settings() };
         let mut none = null_mut();
-        let said =
-            refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
+        let said = refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
         assert!(said.contains("give 0 to 1"), "{said}");
         refused!(InvalidArgument, airglow_fog_record, prepared, 0, null(), 0);
     });

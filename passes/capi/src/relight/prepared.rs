@@ -12,7 +12,7 @@ use super::frame::{AirglowRelightFrame, AirglowRelightInstance, orientation, qua
 use super::sky::Sky;
 use super::{AirglowRelight, misuse};
 use crate::binding::Kept;
-use crate::input::{array, exclusive, shared, store, take, versioned};
+use crate::input::{array, exclusive, one_of, shared, store, take, versioned};
 use crate::status::{AirglowError, AirglowStatus, edge};
 
 /// A frame of the pass, ready to be recorded, and again in later frames while meshes, light and sizes stay. One thread
@@ -168,6 +168,53 @@ pub unsafe extern "C" fn airglow_prepared_turn(
                 ));
             };
             Ok(rotations.set(quaternion(light), &turned)?)
+        })
+    }
+}
+
+/// Shows (1) or hides (0) an instance of a prepared frame, and says whether its dynamic visibility blocks anything (1) or
+/// not (0); it counts from the next recording on. Nothing is recorded for what is away, and the frame stays as it is.
+/// Results of a hidden instance are not to be read.
+///
+/// # Safety
+/// Nothing beyond the pointers being valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_prepared_show(
+    prepared: *const AirglowPrepared,
+    instance: usize,
+    shown: u32,
+    shadowed: u32,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let all = &shared(prepared, "prepared")?.prepared.shown;
+            let (shown, shadowed) =
+                (one_of("shown", shown, &[false, true])?, one_of("shadowed", shadowed, &[false, true])?);
+            all.set(instance, shown)?;
+            Ok(all.set_shadowed(instance, shadowed)?)
+        })
+    }
+}
+
+/// Puts the light of a prepared frame on (1) or out (0), from the next recording on. While it is out nothing is recorded:
+/// results are not to be read, all is black.
+///
+/// # Safety
+/// Nothing beyond the pointers being valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_prepared_set_lit(
+    prepared: *const AirglowPrepared,
+    lit: u32,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let lit = one_of("lit", lit, &[false, true])?;
+            shared(prepared, "prepared")?.prepared.shown.set_lit(lit);
+            Ok(())
         })
     }
 }

@@ -43,4 +43,14 @@ impl Source {
     pub(crate) fn is_shadowed(self) -> bool {
         matches!(self, Self::Dynamic | Self::Both | Self::ShadowedNormals)
     }
+
+    /// The same for frames in which the dynamic visibility blocks nothing; none where there is no dynamic visibility.
+    pub(crate) fn unshadowed(self) -> Option<Self> {
+        match self {
+            Self::Both => Some(Self::Baked),
+            Self::Dynamic => Some(Self::Open),
+            Self::ShadowedNormals => Some(Self::Normals),
+            Self::Baked | Self::Normals | Self::Open => None,
+        }
+    }
 }

@@ -71,6 +71,11 @@ fn a_frame_is_data_before_anything_is_made() {
         let light = [0.0, 0.0, 1.0, 1.0];
         call!(airglow_prepared_turn, prepared, light.as_ptr(), instances.as_ptr(), 2);
         refused!(InvalidArgument, airglow_prepared_turn, prepared, light.as_ptr(), instances.as_ptr(), 1);
+        call!(airglow_prepared_show, prepared, 1, 0, 0);
+        call!(airglow_prepared_set_lit, prepared, 0);
+        refused!(InvalidArgument, airglow_prepared_show, prepared, 2, 1, 1);
+        refused!(InvalidArgument, airglow_prepared_show, prepared, 1, 2, 1);
+        refused!(InvalidArgument, airglow_prepared_set_lit, prepared, 2);
         refused!(InvalidArgument, airglow_prepared_record, prepared, 0, null(), 0);
         let memory = text(|text| call!(airglow_context_memory_json, context, text));
         assert!(memory.contains("\"owner\":\"relight\""), "{memory}");

@@ -50,6 +50,8 @@ fn null_is_refused_everywhere_and_dropping_it_is_nothing() {
     refused!(InvalidArgument, airglow_prepared_forget, null());
     refused!(InvalidArgument, airglow_relight_set_world, null(), null());
     refused!(InvalidArgument, airglow_world_check, null());
+    refused!(InvalidArgument, airglow_prepared_show, null(), 0, 1, 1);
+    refused!(InvalidArgument, airglow_prepared_set_lit, null(), 1);
     refused!(InvalidArgument, airglow_prepared_turn, null(), null(), null(), 0);
     refused!(InvalidArgument, airglow_prepared_accesses, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_prepared_resources, null(), null_mut(), null_mut());
