@@ -43,6 +43,7 @@ pub mod shade;
 mod stage;
 mod storage;
 pub mod vmf;
+pub mod zonal;
 
 pub use bench::Bench;
 pub use brdf::{Brdf, Directions};

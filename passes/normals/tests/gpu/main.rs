@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod functions;
 mod textures;
 
 use airglow_gpu::{GpuError, Recorder, Requirements};

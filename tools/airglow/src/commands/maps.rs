@@ -23,7 +23,8 @@ use crate::report::lines::{self, Series};
 
 /// Draw a scene with its normal maps filtered in each way, and compare with the truth by many samples.
 ///
-/// Writes rows.png (a row for each filter, the truth first; a column for each distance), zoom.csv and zoom.svg (mean
+/// Writes rows.png (a row for each filter, the truth first; a column for each distance, its middle enlarged pixel by
+/// pixel to the size it has in the first), zoom.csv and zoom.svg (mean
 /// brightness of a camera that moves away, frame by frame), and says the error of each filter.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -90,7 +91,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         Ok((rows, exposure))
     })?;
     std::fs::create_dir_all(&arguments.output).map_err(Failure::work)?;
-    write_png(&arguments.output.join("rows.png"), &stacked(&rows), exposure).map_err(Failure::work)?;
+    let sheet = stacked(&rows, &arguments.distances);
+    write_png(&arguments.output.join("rows.png"), &sheet, exposure).map_err(Failure::work)?;
     if arguments.zoom > 0 {
         write_zoom(&arguments.output, &arguments.zoom_distances(), &rows)?;
     }
@@ -176,17 +178,22 @@ fn brightness(picture: &FloatImage) -> f64 {
 }
 
 /// The pictures, a row for each filter.
-fn stacked(rows: &[Row]) -> FloatImage {
+fn stacked(rows: &[Row], distances: &[f32]) -> FloatImage {
     let first = &rows[0].pictures[0];
-    let (width, height) = (first.width * rows[0].pictures.len(), first.height * rows.len());
-    let line = |pictures: &[FloatImage], y: usize| -> Vec<[f32; 3]> {
-        pictures
-            .iter()
-            .flat_map(|picture| picture.pixels[y * picture.width..][..picture.width].to_vec())
-            .collect()
+    let (width, height) = (first.width, first.height);
+    let pixel = |row: usize, x: usize, y: usize| {
+        let (column, x) = (x / width, x % width);
+        let times = distances[column] / distances[0];
+        let place = |place: usize, side: usize| {
+            let middle = 0.5 * side as f32;
+            ((middle + (place as f32 + 0.5 - middle) / times) as usize).min(side - 1)
+        };
+        rows[row].pictures[column].pixels[place(y, height) * width + place(x, width)]
     };
-    let pixels = rows.iter().flat_map(|row| (0..first.height).flat_map(|y| line(&row.pictures, y))).collect();
-    FloatImage { width, height, pixels }
+    let (columns, lines) = (width * distances.len(), height * rows.len());
+    let places = (0..lines).flat_map(|y| (0..columns).map(move |x| (x, y)));
+    let pixels = places.map(|(x, y)| pixel(y / height, x, y % height)).collect();
+    FloatImage { width: columns, height: lines, pixels }
 }
 
 /// The brightness of each frame as a table and as a plot.
