@@ -40,10 +40,10 @@ pub mod reference;
 pub mod rivals;
 mod settings;
 pub mod shade;
+pub mod stability;
 mod stage;
 mod storage;
 pub mod vmf;
-pub mod zonal;
 
 pub use bench::Bench;
 pub use brdf::{Brdf, Directions};

@@ -4,7 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod functions;
+mod limits;
 mod textures;
 
 use airglow_gpu::{GpuError, Recorder, Requirements};

@@ -3,6 +3,8 @@
 mod again;
 #[cfg(feature = "fog")]
 mod fog;
+#[cfg(feature = "normals")]
+mod normals;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -30,6 +32,7 @@ use again::Again;
 #[command(after_help = "Examples:
   airglow stability relight
   airglow stability fog
+  airglow stability normals
   airglow stability relight --case 'rotation: zero, order 6'
   airglow stability relight -o out/stability     the table and the sweeps' plots as a page")]
 pub struct Arguments {
@@ -55,6 +58,9 @@ enum Tried {
     /// Single scattering from lights inside a medium.
     #[cfg(feature = "fog")]
     Fog,
+    /// The levels of normal maps as mixtures of lobes.
+    #[cfg(feature = "normals")]
+    Normals,
 }
 
 impl Tried {
@@ -63,6 +69,8 @@ impl Tried {
             Self::Relight => "relight",
             #[cfg(feature = "fog")]
             Self::Fog => "fog",
+            #[cfg(feature = "normals")]
+            Self::Normals => "normals",
         }
     }
 }
@@ -124,6 +132,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         Tried::Relight => try_relight(arguments, global, output)?,
         #[cfg(feature = "fog")]
         Tried::Fog => fog::attempt(arguments, global, output)?,
+        #[cfg(feature = "normals")]
+        Tried::Normals => normals::attempt(arguments, global, output)?,
     };
     if table.rows.is_empty() && table.sweeps.is_empty() {
         let name = arguments.case.as_deref().unwrap_or_default();
