@@ -13,7 +13,7 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
 #[cfg(feature = "fog")]
-use crate::host::airs;
+use crate::host::{airs, complete::Road};
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
@@ -90,6 +90,10 @@ pub struct Arguments {
     #[cfg(feature = "fog")]
     #[arg(long, conflicts_with_all = ["without", "compare_fog"])]
     depth_fog: bool,
+    /// Draw surfaces in fog by the complete model in the forward draw, without the pass: a night scene with lamps.
+    #[cfg(feature = "fog")]
+    #[arg(long, value_enum, value_name = "WHERE", conflicts_with_all = ["without", "depth_fog", "compare_fog"])]
+    complete: Option<CompleteName>,
     /// Draw the scene three times, side by side: in clear air, in exponential depth fog and by the fog pass.
     #[cfg(feature = "fog")]
     #[arg(long, conflicts_with = "without")]
@@ -122,6 +126,16 @@ pub enum PassName {
     Relight,
     /// Scattering in the scene's medium; without it the air is clear.
     Fog,
+}
+
+/// Where the complete model is evaluated.
+#[cfg(feature = "fog")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CompleteName {
+    /// At each pixel.
+    Pixels,
+    /// At each vertex.
+    Vertices,
 }
 
 /// What `--stat` writes.
@@ -232,6 +246,13 @@ impl Arguments {
         #[cfg(feature = "fog")]
         if self.compare_fog {
             return airs::side_by_side(renderer, settings, frames);
+        }
+        #[cfg(feature = "fog")]
+        if let Some(at) = self.complete {
+            settings.air = Air::Complete(match at {
+                CompleteName::Pixels => Road::Pixels,
+                CompleteName::Vertices => Road::Vertices,
+            });
         }
         #[cfg(feature = "fog")]
         if self.depth_fog {

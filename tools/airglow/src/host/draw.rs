@@ -12,6 +12,8 @@ use airglow_gpu::{
 use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
 use bytemuck::{Pod, Zeroable};
 
+#[cfg(feature = "fog")]
+use super::complete::Complete;
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
@@ -51,6 +53,9 @@ pub struct Lights {
     pub constants: Arc<LightsConstants>,
     /// Tables of the lobes that the materials reflect by in fog.
     pub lobes: Option<Handle<Buffer>>,
+    /// The complete model, where the draw has it.
+    #[cfg(feature = "fog")]
+    pub complete: Option<Complete>,
 }
 
 /// A view of the scene as the forward draw leaves it.
@@ -169,7 +174,7 @@ impl Pipelines {
         }
         let lobes = lights.and_then(|lights| lights.lobes);
         if let Some(lobes) = &lobes {
-            pass.read(lobes, Access::FragmentStorageRead);
+            pass.read(lobes, Access::FragmentStorageRead).read(lobes, Access::VertexStorageRead);
         }
         let image = |format| ImageDesc::new_2d(size[0], size[1], format);
         let hdr = pass.create_image("hdr", image(self.hdr), Access::ColorAttachmentWrite);
@@ -179,6 +184,10 @@ impl Pipelines {
             _ => [&self.lit, &self.ambient],
         };
         let lit = if colours.is_some() { lit } else { ambient };
+        #[cfg(feature = "fog")]
+        let complete = lights.and_then(|lights| lights.complete.clone());
+        #[cfg(feature = "fog")]
+        let lit = complete.as_ref().map_or(lit, |complete| complete.pipelines.of(colours.is_some()));
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
         let mapped = if lobes.is_some() { BTreeMap::new() } else { self.mapped.clone() };
         let glow = behind.and_then(|behind| behind.glow.clone());
@@ -197,6 +206,12 @@ impl Pipelines {
             }
             if let Some(lobes) = &lobes {
                 bound.push(Binding::storage(4, resources.buffer(lobes)?));
+            }
+            #[cfg(feature = "fog")]
+            if let Some(complete) = &complete {
+                let through = complete.binding(recorder)?;
+                complete.record_sky(recorder, &view, &through)?;
+                bound.push(through);
             }
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
@@ -303,7 +318,7 @@ fn record_draw(
 }
 
 /// The fourth is for the lights, where there are any, the last for their tables in fog.
-const DRAW_BINDINGS: [BindingDesc; 5] = [
+pub const DRAW_BINDINGS: [BindingDesc; 5] = [
     BindingDesc::new(0, BindingKind::UniformBuffer),
     BindingDesc::new(1, BindingKind::SampledImage),
     BindingDesc::new(2, BindingKind::Sampler),
@@ -325,16 +340,20 @@ const MAPPED_BINDINGS: [BindingDesc; 8] = [
 
 /// What the vertex stage hands on of a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Inputs {
+pub enum Inputs {
     /// Texture coordinates and the light of the vertex.
     Unlit,
     /// Place and normal as well: the scene has lights.
     Lit,
+    /// What lamps shine on the vertex, through a medium.
+    #[cfg(feature = "fog")]
+    LitVertices,
     /// Tangent as well: the surface has a normal map.
     Mapped,
 }
 
-fn scene_pipeline(
+/// The pipeline of a forward draw.
+pub fn scene_pipeline(
     context: &Context,
     hdr: vk::Format,
     relight: bool,
@@ -357,6 +376,8 @@ fn scene_pipeline(
     let vertex = match inputs {
         #[cfg(feature = "normals")]
         Inputs::Mapped => shaders::mapped_vertex(relight),
+        #[cfg(feature = "fog")]
+        Inputs::LitVertices => shaders::complete_vertex(relight),
         _ => shaders::scene_vertex(relight, inputs != Inputs::Unlit),
     };
     context.create_graphics_pipeline(&GraphicsPipelineDesc {

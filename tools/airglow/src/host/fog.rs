@@ -9,9 +9,10 @@ use airglow_scene::{Camera, Light, LightKind, Material, MaterialClass, Projectio
 use glam::{DQuat, Vec3};
 use half::f16;
 
+use super::complete::{Complete, CompletePipelines};
 use super::depth_fog::{DepthFog, DepthFogConstants};
 use super::device::Device;
-use super::draw::Drawn;
+use super::draw::{Drawn, Lights};
 use super::fog_sky::FoggedSky;
 use super::renderer::{Air, Renderer, Settings};
 use super::scene::DeviceScene;
@@ -162,6 +163,11 @@ pub fn add(
             }
             return Ok(Vec::new());
         }
+        (Some(_), Air::Complete(_)) => {
+            let why = "the forward draw has the complete model (--complete)";
+            graph.leave_out(left_out(why, "a frame without --complete"));
+            return Ok(Vec::new());
+        }
         (Some(_), Air::Clear) => {
             graph.leave_out(left_out(
                 "the host was asked to leave it out (--without fog)",
@@ -182,6 +188,34 @@ pub fn add(
         controls.extend(fogged.control);
     }
     Ok(controls)
+}
+
+/// The lights of a view with the complete model in its draw, where that is asked for; `controls` gets what changes it.
+pub fn complete(
+    renderer: &Renderer<'_>,
+    settings: &Settings,
+    view: usize,
+    lights: Option<Lights>,
+    controls: &mut Vec<fog::Control>,
+) -> Outcome<Option<Lights>> {
+    let Air::Complete(road) = settings.air else { return Ok(lights) };
+    let view = renderer.fog_views(settings, settings.turn)?.into_iter().nth(view);
+    let whole = lights.filter(|lights| lights.lobes.is_some() && renderer.environment.is_none());
+    let (Some(fog), Some(view), Some(lights)) = (&renderer.fog, view, whole) else {
+        return Err(Failure::input(
+            "--complete draws lamps in a medium at night: it needs a scene with both and without an environment",
+        ));
+    };
+    let size = settings.size.map(|side| side * settings.samples);
+    let frame = fog::Frame { size, surface: (), depth: (), target: None, view };
+    let fog::Prepared::Pass(pass) = fog.pass.prepare(&frame).map_err(Failure::work)? else {
+        return Ok(Some(lights));
+    };
+    let context = renderer.device.context();
+    let pipelines =
+        CompletePipelines::new(context, fog.pass.settings().format, road).map_err(Failure::work)?;
+    controls.push(pass.control.clone());
+    Ok(Some(Lights { complete: Some(Complete { pipelines, control: pass.control }), ..lights }))
 }
 
 /// Depth fog of the medium's extinction.

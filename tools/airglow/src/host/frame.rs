@@ -10,7 +10,7 @@ use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexCol
 #[cfg(feature = "fog")]
 use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
-use super::renderer::{Air, Renderer, Settings};
+use super::renderer::{Renderer, Settings};
 use super::sky::{Behind, Glow};
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
@@ -128,12 +128,22 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let pipelines = &renderer.pipelines;
     let lobes = lobes(renderer, settings, &mut graph, &mut imports);
     let lights = renderer.lights.map(|lights| {
-        let lights = if settings.air == Air::Fog { lights } else { lights.without_medium() };
-        Lights { constants: Arc::new(lights), lobes }
+        let lights = if settings.air.is_fog() { lights } else { lights.without_medium() };
+        Lights {
+            constants: Arc::new(lights),
+            lobes,
+            #[cfg(feature = "fog")]
+            complete: None,
+        }
     });
     let behind = environment.map(|environment| Behind { environment, glow: glow(renderer, settings) });
     let mut drawn = Vec::with_capacity(views.len());
-    for view in &views {
+    #[cfg(feature = "fog")]
+    let mut fog = Vec::new();
+    #[cfg_attr(not(feature = "fog"), expect(unused_variables, reason = "only fog differs from view to view"))]
+    for (index, view) in views.iter().enumerate() {
+        #[cfg(feature = "fog")]
+        let lights = fog::complete(renderer, settings, index, lights.clone(), &mut fog)?;
         let (colours, lights) = (colours.as_ref(), lights.as_ref());
         drawn.push(pipelines.scene(
             &mut graph,
@@ -148,7 +158,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
     // The medium before it dims them and glows.
     #[cfg(feature = "fog")]
-    let fog = fog::add(renderer, settings, &mut graph, &mut drawn)?;
+    fog.extend(fog::add(renderer, settings, &mut graph, &mut drawn)?);
 
     // Exposure, tone map and encoding make the picture, the views side by side.
     let mut picture = |name, buffer: &airglow_gpu::Buffer| {
@@ -178,6 +188,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         imports,
         turning: Turning {
             rotations,
+            #[cfg(feature = "radiance")]
+            near,
             views,
             #[cfg(feature = "fog")]
             fog,
@@ -188,10 +200,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
 /// What a medium before the environment does to the bands of its light, where there is one.
 #[cfg(feature = "fog")]
-            #[cfg(feature = "radiance")]
-            near,
 fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec<[f64; 3]>> {
-    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
+    let fog = renderer.fog.as_ref().filter(|_| settings.air.is_fog())?;
     Some(fog.sky.as_ref()?.factors.clone())
 }
 
@@ -204,7 +214,7 @@ fn filter(_: &Renderer<'_>, _: &Settings) -> Option<Vec<[f64; 3]>> {
 /// What it makes of the background.
 #[cfg(feature = "fog")]
 fn glow(renderer: &Renderer<'_>, settings: &Settings) -> Option<Glow> {
-    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
+    let fog = renderer.fog.as_ref().filter(|_| settings.air.is_fog())?;
     Some(fog.sky.as_ref()?.glow.clone())
 }
 
@@ -222,7 +232,7 @@ fn lobes(
     graph: &mut Graph<Record>,
     imports: &mut Imports,
 ) -> Option<Handle<Buffer>> {
-    let fog = renderer.fog.as_ref().filter(|_| settings.air == Air::Fog)?;
+    let fog = renderer.fog.as_ref().filter(|_| settings.air.is_fog())?;
     fog.lobes.add(graph, imports)
 }
 

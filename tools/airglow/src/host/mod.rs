@@ -6,6 +6,12 @@
 //! `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod airs;
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod complete;
+#[cfg(all(feature = "fog", feature = "relight"))]
+pub mod depth_fog;
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;
@@ -30,6 +36,8 @@ pub mod near;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;
+#[cfg(feature = "relight")]
+pub mod settings;
 #[cfg(feature = "relight")]
 pub mod shaders;
 #[cfg(feature = "relight")]

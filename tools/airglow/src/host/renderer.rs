@@ -7,7 +7,7 @@ use airglow_gpu::ash::vk;
 use airglow_gpu::{
     Buffer, Calibration, Execution, FrameTimes, Health, Imports, Label, Location, Timing, TimingSummary,
 };
-use airglow_graph::{BufferDesc, ImageDesc, LeftOut, Plan};
+use airglow_graph::{BufferDesc, LeftOut, Plan};
 use airglow_math::sequence;
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
@@ -24,6 +24,7 @@ use super::lights::LightsConstants;
 #[cfg(feature = "normals")]
 use super::mapped::MappedMaterials;
 use super::scene::{self, DeviceScene};
+pub use super::settings::{Air, Settings};
 use super::unread;
 use super::upload;
 use super::view::{self, ViewConstants};
@@ -60,63 +61,6 @@ pub struct EnvironmentMap {
     pub(super) height: u32,
     /// World from map.
     pub(super) rotation: DQuat,
-}
-
-/// What may change from frame to frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Pixels of each view.
-    pub size: [u32; 2],
-    /// Views side by side in the picture.
-    pub views: u32,
-    /// Samples along each side of a pixel.
-    pub samples: u32,
-    /// Factor from scene-linear values to the display.
-    pub exposure: f32,
-    /// Turns the environment, on top of the scene's own rotation.
-    pub turn: DQuat,
-    /// Turns the environment further about the vertical axis in each frame, radians.
-    pub spin: f64,
-    /// Leaves the relight pass out of the frame, though it is there: ambient light only.
-    pub without_relight: bool,
-    /// How the scene's medium is drawn.
-    pub air: Air,
-    /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
-    /// order of their channels.
-    pub window: Option<ImageDesc>,
-}
-
-/// How the medium of a scene is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Air {
-    /// By the fog pass.
-    #[default]
-    Fog,
-    /// Not at all: clear air.
-    Clear,
-    /// As exponential depth fog of this colour, W/sr/m2.
-    #[cfg(feature = "fog")]
-    DepthFog([f32; 3]),
-}
-
-impl Air {
-    /// Fog, or clear air without it.
-    pub fn with_fog(fog: bool) -> Self {
-        if fog { Self::Fog } else { Self::Clear }
-    }
-}
-
-impl Settings {
-    /// Whether blue is the lowest byte of a pixel for the display.
-    pub(super) fn blue_first(&self) -> bool {
-        let blue_first = [vk::Format::B8G8R8A8_SRGB, vk::Format::B8G8R8A8_UNORM];
-        self.window.is_some_and(|window| blue_first.contains(&window.format))
-    }
-
-    /// Pixels of the picture.
-    pub fn picture_size(&self) -> [u32; 2] {
-        [self.views * self.size[0], self.size[1]]
-    }
 }
 
 /// A picture, and what it took.

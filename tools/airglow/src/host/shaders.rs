@@ -65,6 +65,27 @@ pub fn scene_fragment_in_fog() -> Vec<u32> {
     module!("fog/", "scene")
 }
 
+/// The fragment stage of the forward draw of the complete model, evaluated there or at the vertices.
+#[cfg(feature = "fog")]
+pub fn complete_fragment(vertices: bool) -> Vec<u32> {
+    if vertices { module!("fog/", "complete.FOG_COMPLETE2") } else { module!("fog/", "complete.FOG_COMPLETE1") }
+}
+
+/// The vertex stage that evaluates it.
+#[cfg(feature = "fog")]
+pub fn complete_vertex(relight: bool) -> Vec<u32> {
+    match relight {
+        false => module!("fog/", "complete_vertex"),
+        true => module!("fog/", "complete_vertex.AIRGLOW_RELIGHT"),
+    }
+}
+
+/// The fragment stage of its airlight behind the surfaces.
+#[cfg(feature = "fog")]
+pub fn complete_sky() -> Vec<u32> {
+    module!("fog/", "complete_sky")
+}
+
 /// The vertex stage of the background.
 pub fn sky_vertex() -> Vec<u32> {
     module!("sky_vertex")
