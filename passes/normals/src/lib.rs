@@ -44,6 +44,7 @@ pub mod stability;
 mod stage;
 mod storage;
 pub mod vmf;
+pub mod zonal;
 
 pub use bench::Bench;
 pub use brdf::{Brdf, Directions};
