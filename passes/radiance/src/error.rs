@@ -61,9 +61,9 @@ pub enum RadianceError {
         /// The second of the two.
         second: usize,
     },
-    /// Emitters that overlap as seen in single precision, though not in double.
+    /// Emitters that touch each other or the point in single precision, though not in double.
     #[error(
-        "emitters touch as seen from the point, too closely for a device to tell them apart; use a cube map"
+        "emitters touch each other or the point, too closely for a device to tell them apart: use a cube map"
     )]
     Touching,
     /// The caller's progress function asked to stop.

@@ -22,6 +22,7 @@ mod reconstruct;
 pub mod reference;
 mod refine;
 pub mod rivals;
+pub mod stability;
 mod stage;
 #[cfg(test)]
 mod testing;

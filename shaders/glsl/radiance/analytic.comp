@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Incident radiance of few triangles in closed form, at samples from which none of those that emit overlaps another: a
-// workgroup a sample. The record of a sample says in its third number whether it is one (1) or is left to a cube map (0).
+// Incident radiance of few triangles in closed form, at samples from which none of those that emit overlaps another
+// or has an edge that touches the point: a workgroup a sample. The record of a sample says in its third number whether it is one (1) or is left to a cube map (0).
 //
 // ORDER      3-6
 // GRADIENTS  1: derivatives by the sample's position, too
@@ -65,6 +65,9 @@ void main()
             if (triangles_overlap(one, other)) { atomicOr(overlaps, 1u); }
         }
     }
+    bool touches = edge_touches(corners[0], corners[1]) || edge_touches(corners[1], corners[2])
+        || edge_touches(corners[2], corners[0]);
+    if (touches && max(radiance.r, max(radiance.g, radiance.b)) > 0.0) { atomicOr(overlaps, 1u); }
     barrier();
     bool exact = overlaps == 0u;
     vec4 sums[ELEMENTS];

@@ -17,17 +17,26 @@ const vec2 GAUSS[6] = vec2[6]( // node in (0, 1) and weight, of the upper half
     vec2(0.587317954286617, 0.203167426723066), vec2(0.769902674194305, 0.160078328543346),
     vec2(0.904117256370475, 0.106939325995318), vec2(0.981560634246719, 0.047175336386512));
 
-// Signed solid angle (van Oosterom and Strackee 1983).
-float triangle_solid_angle(vec3 a, vec3 b, vec3 c)
+// Solid angle of a triangle of corners a, b, c, whose normal's product with a is `volume` (van Oosterom and Strackee 1983).
+float triangle_solid_angle(vec3 a, vec3 b, vec3 c, float volume)
 {
-    return 2.0 * angle_of(dot(a, cross(b, c)), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+    vec3 far = vec3(length(a), length(b), length(c));
+    float cosines = far.x * far.y * far.z + dot(a, b) * far.z + dot(b, c) * far.x + dot(c, a) * far.y;
+    return 2.0 * angle_of(abs(volume), cosines);
 }
+
+// Triangles of smaller angles are taken as their middle: their edges would cancel to rounding. Both ways err by some 3e-5
+// of the light at the limit.
+#define SMALL_ANGLE 0.003
 
 // Whether the triangles of unit corners share directions: no plane through the point parts them.
 bool triangles_overlap(vec3 one[3], vec3 other[3])
 {
     const float touch = 1e-6; // sines below it are rounding: neighbours in a mesh do not overlap
-    bool apart = false;
+    // Nor does what has no more than twice that in steradians cover anything.
+    float volume = abs(dot(one[0], cross(one[1], one[2])));
+    float other_volume = abs(dot(other[0], cross(other[1], other[2])));
+    bool apart = min(volume, other_volume) < touch;
     for (int i = 0; i < 15; ++i) {
         int j = i % 3;
         vec3 plane = i < 3 ? cross(one[j], one[(j + 1) % 3])
@@ -40,6 +49,24 @@ bool triangles_overlap(vec3 one[3], vec3 other[3])
         apart = apart || (length(plane) > touch && (below || above));
     }
     return !apart;
+}
+
+// a x b from the two shortest sides of the triangle of a, b and the point: what is left of the longest in rounding is more
+// than the others are worth.
+vec3 edge_axis(vec3 a, vec3 b)
+{
+    vec3 between = b - a;
+    vec3 squares = vec3(dot(a, a), dot(b, b), dot(between, between));
+    float most = max(squares.x, max(squares.y, squares.z));
+    if (most == squares.z) { return cross(a, b); }
+    return most == squares.x ? cross(b, between) : cross(a, between);
+}
+
+// Whether an edge passes the point so near, between its ends, that single precision cannot tell on which side.
+bool edge_touches(vec3 a, vec3 b)
+{
+    vec3 axis = edge_axis(a, b);
+    return dot(a, b) < 0.0 && dot(axis, axis) < 1e-6 * dot(a, a) * dot(b, b);
 }
 
 // A triangle's sums at radiance 1, and as if seen from its front.
@@ -55,7 +82,7 @@ struct Polygon {
 // edge's normal.
 void polygon_edge(vec3 a, vec3 b, inout Polygon polygon)
 {
-    vec3 axis = cross(a, b);
+    vec3 axis = edge_axis(a, b);
     float sine = length(axis);
     if (sine == 0.0) { return; }
     float angle = angle_of(sine, dot(a, b));
@@ -108,15 +135,35 @@ void polygon_sums(vec3 a, vec3 b, vec3 c, vec3 radiance, out vec4 sums[ELEMENTS]
     [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) { polygon.gradients[i] = vec3(0.0); }
 #endif
     vec3 normal = cross(b - a, c - a);
-    float height = dot(a, normal) / max(length(normal), 1e-37);
-    bool seen = height != 0.0 && max(radiance.r, max(radiance.g, radiance.b)) > 0.0;
+    float area = 0.5 * length(normal);
+    float volume = dot(a, normal);
+    bool seen = volume != 0.0 && max(radiance.r, max(radiance.g, radiance.b)) > 0.0;
+    vec3 middle = (a + b + c) / 3.0;
+    float far = length(middle);
+    float extent = max(distance(a, b), max(distance(b, c), distance(c, a)));
+    bool small = extent < SMALL_ANGLE * far;
     vec3 corners[4] = vec3[4](a, b, c, a);
-    for (int k = 0; k < (seen ? 3 : 0); ++k) { polygon_edge(corners[k], corners[k + 1], polygon); }
+    for (int k = 0; k < (seen && !small ? 3 : 0); ++k) { polygon_edge(corners[k], corners[k + 1], polygon); }
     sums_clear(sums);
-    if (seen) {
-        vec3 power = sign(height) * radiance;
-        float solid_angle = sign(height) * triangle_solid_angle(normalize(a), normalize(b), normalize(c));
-        float nearness = dot(polygon.flux, normalize(normal)) / abs(height);
+    if (seen && small) {
+        Texel texel;
+        texel.direction = middle / far;
+        texel.solid_angle = 0.5 * abs(dot(normal, texel.direction)) / (far * far);
+        texel.radiance = radiance;
+        texel.covered = 1.0;
+        texel.nearness = min(1.0 / far, MOST_NEARNESS);
+        texel.slope = texel.nearness * radiance;
+#if GRADIENTS
+        vec3 tilt = normal / dot(normal, texel.direction);
+        [[unroll]] for (int k = 0; k < 3; ++k) { texel.tilt[k] = tilt[k] * texel.slope; }
+#endif
+        sums_add(texel, sums);
+    }
+    if (seen && !small) {
+        vec3 power = sign(volume) * radiance;
+        float solid_angle = triangle_solid_angle(a, b, c, volume);
+        float height = abs(volume) / (2.0 * area);
+        float nearness = abs(dot(polygon.flux, normal)) / (2.0 * area * height);
         nearness = min(nearness, MOST_NEARNESS * solid_angle);
         sums[0].rgb = 0.282094791773878 * solid_angle * radiance;
         [[unroll]] for (int i = 1; i < COEFFICIENTS; ++i) { sums[i].rgb = polygon.integrals[i] * power; }

@@ -2,9 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
+mod conformance;
+mod motion;
 mod pass;
 mod receivers;
 mod scenes;
+mod stability;
 mod texels;
 
 use airglow_gpu::{GpuError, Recorder, Requirements};

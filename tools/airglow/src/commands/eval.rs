@@ -31,6 +31,8 @@ use crate::output::Output;
   fog-psf         t_sv, gamma -> psf                    also method (exact, factored)
   normals         level, x, y, lx, ly, lz, vx, vy, vz, brdf -> radiance   --set map=FILE; brdf (lambert, blinn:n,
                   ggx:a); also method (vmf:1, vmf:2, vmf:4, vmf:6; default is vmf:4)
+  radiance-cube   order, face, px, py, pz, triangles (9 numbers each), radiance (one each) -> sh, distance
+                  also method (cube, analytic: refuses what overlaps); --set rays=1, 2 or 4 a side of a texel
   sh-circle       order, theta -> visibility, log       blocker about +Z; zonal, order values each
   sh-log          order, g -> f                         eigenvalues clipped at 0.02 of the largest
   sh-exp          order, f -> g                         also method (default, exact, ol, hyb:T, psN, pssN)
@@ -78,6 +80,9 @@ pub enum Evaluator {
     /// The radiance of a texel of a normal map's level.
     #[cfg(feature = "normals")]
     Normals,
+    /// Incident radiance of triangles at a point.
+    #[cfg(feature = "radiance")]
+    RadianceCube,
     /// Visibility of a circle of directions and its logarithm.
     #[cfg(feature = "shadow")]
     ShCircle,
@@ -106,6 +111,8 @@ impl Evaluator {
             Self::FogPsf => &["t_sv", "gamma"],
             #[cfg(feature = "normals")]
             Self::Normals => &["level", "x", "y", "lx", "ly", "lz", "vx", "vy", "vz", "brdf"],
+            #[cfg(feature = "radiance")]
+            Self::RadianceCube => &["order", "face", "px", "py", "pz", "triangles", "radiance"],
             #[cfg(feature = "shadow")]
             Self::ShCircle => &["order", "theta"],
             #[cfg(feature = "shadow")]
@@ -130,6 +137,8 @@ impl Evaluator {
             Self::FogPsf => &["psf"],
             #[cfg(feature = "normals")]
             Self::Normals => &["radiance"],
+            #[cfg(feature = "radiance")]
+            Self::RadianceCube => &["sh", "distance"],
             #[cfg(feature = "shadow")]
             Self::ShCircle => &["visibility", "log"],
             #[cfg(feature = "shadow")]
@@ -149,6 +158,8 @@ impl Evaluator {
             Self::FogAirlight | Self::FogSurface | Self::FogPsf => &["method"],
             #[cfg(feature = "normals")]
             Self::Normals => &["map"],
+            #[cfg(feature = "radiance")]
+            Self::RadianceCube => &["rays"],
             #[cfg(feature = "shadow")]
             Self::ShCircle | Self::ShLog | Self::ShExp | Self::ShadowSpheres => &[],
         }
@@ -201,6 +212,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Evaluator::Normals => {
                 let bench = airglow::normals::Bench { context: device.context(), run: &run };
                 eval::normals::normals(&bench, &table, &settings)
+            }
+            #[cfg(feature = "radiance")]
+            Evaluator::RadianceCube => {
+                let bench = airglow::radiance::gpu::bench::Bench { context: device.context(), run: &run };
+                eval::radiance::cube(&bench, &table, &settings)
             }
             #[cfg(feature = "shadow")]
             Evaluator::ShCircle => eval::shadow::circle(&table),

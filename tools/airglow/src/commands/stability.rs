@@ -5,6 +5,8 @@ mod again;
 mod fog;
 #[cfg(feature = "normals")]
 mod normals;
+#[cfg(feature = "radiance")]
+mod radiance;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -32,6 +34,7 @@ use again::Again;
 #[command(after_help = "Examples:
   airglow stability relight
   airglow stability fog
+  airglow stability radiance
   airglow stability normals
   airglow stability relight --case 'rotation: zero, order 6'
   airglow stability relight -o out/stability     the table and the sweeps' plots as a page")]
@@ -61,6 +64,9 @@ enum Tried {
     /// The levels of normal maps as mixtures of lobes.
     #[cfg(feature = "normals")]
     Normals,
+    /// Incident radiance of near emitters.
+    #[cfg(feature = "radiance")]
+    Radiance,
 }
 
 impl Tried {
@@ -69,6 +75,8 @@ impl Tried {
             Self::Relight => "relight",
             #[cfg(feature = "fog")]
             Self::Fog => "fog",
+            #[cfg(feature = "radiance")]
+            Self::Radiance => "radiance",
             #[cfg(feature = "normals")]
             Self::Normals => "normals",
         }
@@ -132,6 +140,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         Tried::Relight => try_relight(arguments, global, output)?,
         #[cfg(feature = "fog")]
         Tried::Fog => fog::attempt(arguments, global, output)?,
+        #[cfg(feature = "radiance")]
+        Tried::Radiance => radiance::attempt(arguments, global, output)?,
         #[cfg(feature = "normals")]
         Tried::Normals => normals::attempt(arguments, global, output)?,
     };

@@ -5,6 +5,8 @@ pub mod fog;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod normals;
 pub mod number;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod radiance;
 #[cfg(feature = "relight")]
 pub mod relight;
 #[cfg(all(feature = "relight", feature = "shadow"))]

@@ -83,7 +83,7 @@ impl Table {
     }
 
     /// The text of a cell without the spaces around it, or `otherwise` where it is empty or its column is absent.
-    #[cfg(any(feature = "fog", feature = "normals", feature = "shadow"))]
+    #[cfg(any(feature = "fog", feature = "normals", feature = "radiance", feature = "shadow"))]
     pub fn word<'a>(&'a self, row: usize, column: &str, otherwise: &'a str) -> Result<&'a str, String> {
         let word = self.cell(row, column)?.trim();
         Ok(if word.is_empty() { otherwise } else { word })
@@ -108,6 +108,15 @@ impl Table {
             return Err(format!("{column} is {value}; expected a whole number from {low} to {high}"));
         }
         Ok(whole)
+    }
+
+    /// A cell as any number of numbers; an empty one has none.
+    #[cfg(feature = "radiance")]
+    pub fn numbers(&self, row: usize, column: &str) -> Result<Vec<f64>, String> {
+        match self.cell(row, column)?.trim() {
+            "" => Ok(Vec::new()),
+            text => number::parse_vector(text).map_err(|problem| format!("{column} {problem}")),
+        }
     }
 
     /// A cell as exactly `length` finite numbers.
