@@ -1,6 +1,6 @@
 //! Which rays of a picture may see a light's airlight: bounds that err on the side of seeing it.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::DVec3;
 
@@ -42,17 +42,22 @@ pub(crate) struct ParallelBeam {
     radius: f64,
 }
 
-/// What a ray must meet to see anything of a light: each of up to four bounds.
+/// What a ray must meet to see anything of a light: each of these bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region {
-    cones: [Option<Cone>; 4],
+    cones: [Option<Cone>; 7],
     balls: [Option<Ball>; 4],
 }
 
 impl Region {
     /// Of a light that reaches so far, `reached` being angles about `position` where rays have one eye and a ball where
-    /// they do not, and that lights nothing outside `balls`.
-    pub fn new(position: DVec3, reached: Reach, balls: [Option<Ball>; 3]) -> Self {
+    /// they do not, and that lights nothing outside `balls` and the cone of a `spot`: axis and half angle.
+    pub fn new(
+        position: DVec3,
+        reached: Reach,
+        balls: [Option<Ball>; 3],
+        spot: Option<(DVec3, f64)>,
+    ) -> Self {
         let within = |reached| match reached {
             Reach::Within(angle) => Some(Cone::new(position.normalize_or_zero(), angle)),
             Reach::Near(_) | Reach::Nowhere | Reach::Everywhere => None,
@@ -63,8 +68,10 @@ impl Region {
         };
         let [first, second, third] = balls;
         let cone = |ball: Option<Ball>| ball.and_then(Cone::about);
+        let [hull, left, right] =
+            spot.map_or([None; 3], |(axis, outer)| Cone::of_spot(position.normalize_or_zero(), axis, outer));
         Self {
-            cones: [within(reached), cone(first), cone(second), cone(third)],
+            cones: [within(reached), cone(first), cone(second), cone(third), hull, left, right],
             balls: [near, first, second, third],
         }
     }
@@ -113,6 +120,26 @@ impl Cone {
         (sine < 1.0).then(|| Self { axis: ball.center / distance, cosine: (1.0 - sine * sine).sqrt(), sine })
     }
 
+    /// Directions in which something of a spot's cone, of half angle `outer`, is seen whose apex lies `towards`: the least
+    /// convex set with that direction and those of the cone itself. It lies within one cone, and between two planes
+    /// through the eye and the apex that touch the spot's. No bound from within.
+    fn of_spot(towards: DVec3, axis: DVec3, outer: f64) -> [Option<Self>; 3] {
+        let between = towards.angle_between(axis);
+        if between <= outer {
+            return [Some(Self::new(axis, outer)), None, None];
+        }
+        let half = 0.5 * (between + outer);
+        let aside = axis.reject_from_normalized(towards).normalize_or_zero();
+        if half >= FRAC_PI_2 || towards == DVec3::ZERO || aside == DVec3::ZERO {
+            return [None; 3];
+        }
+        let share = outer.sin() / between.sin();
+        let rest = (1.0 - share * share).max(0.0).sqrt() * towards.cross(aside);
+        let plane = |normal| Some(Self { axis: normal, cosine: 0.0, sine: 1.0 });
+        let hull = Self::new(half.cos() * towards + half.sin() * aside, half);
+        [Some(hull), plane(share * aside + rest), plane(share * aside - rest)]
+    }
+
     /// Whether they have a direction in common: not if their axes are farther apart than both angles together.
     fn meets(&self, other: &Self) -> bool {
         let sine = self.sine * other.cosine + self.cosine * other.sine;
@@ -139,7 +166,7 @@ mod tests {
     }
 
     fn ball(center: DVec3, radius: f64) -> Region {
-        Region::new(center, Reach::Everywhere, [Some(Ball { center, radius }), None, None])
+        Region::new(center, Reach::Everywhere, [Some(Ball { center, radius }), None, None], None)
     }
 
     #[test]
@@ -178,9 +205,37 @@ mod tests {
     }
 
     #[test]
+    fn a_beam_meets_the_spots_whose_cones_its_rays_enter() {
+        let [mut met, mut entered] = [0; 2];
+        for i in 0..4000_u32 {
+            let part = |alpha: f64| (0.5 + alpha * f64::from(i)).fract();
+            let [a, b, c, d, e] = [0.881_271, 0.776_636, 0.684_425, 0.603_162, 0.531_548].map(part);
+            let apex = 10.0 * DVec3::new(a - 0.5, b - 0.5, c - 0.8);
+            let axis = DVec3::new(d - 0.5, e - 0.5, (d + 3.0 * e).fract() - 0.5).normalize();
+            let outer = FRAC_PI_2 * (a + 2.0 * c).fract().max(0.02);
+            let low = [0.125 * f64::from(i % 8), 0.25 * f64::from(i / 8 % 4)];
+            let beam = Beam::new(&rays(), false, low, [low[0] + 0.125, low[1] + 0.25]);
+            let region = Region::new(apex, Reach::Everywhere, [None; 3], Some((axis, outer)));
+            let lit = (0..25).any(|k| {
+                let place = [low[0] + 0.125 * f64::from(k % 5) / 4.0, low[1] + 0.25 * f64::from(k / 5) / 4.0];
+                let [corner, across, down] = rays().direction;
+                let direction = (corner + place[0] * across + place[1] * down).normalize();
+                (0..60).any(|step| {
+                    let point = 0.01 * 1.25_f64.powi(step) * direction - apex;
+                    point.dot(axis) >= outer.cos() * point.length()
+                })
+            });
+            assert!(!lit || beam.meets(&region), "{apex}, {axis}, {outer}, {beam:?}");
+            met += u32::from(beam.meets(&region));
+            entered += u32::from(lit);
+        }
+        assert!(entered > 500 && met < entered + 800, "{met} of 4000 met, {entered} entered");
+    }
+
+    #[test]
     fn angles_of_more_than_half_a_turn_together_always_meet() {
         let beam = Beam::new(&rays(), false, [0.0; 2], [1.0; 2]);
-        let behind = |angle| Region::new(DVec3::Z, Reach::Within(angle), [None; 3]);
+        let behind = |angle| Region::new(DVec3::Z, Reach::Within(angle), [None; 3], None);
         assert!(beam.meets(&behind(3.0)) && !beam.meets(&behind(1.0)));
         assert!(beam.meets(&ball(DVec3::Z, 2.0)), "the eye is within");
         assert!(!beam.meets(&ball(2.0 * DVec3::Z, 1.0)));

@@ -147,7 +147,7 @@ mod tests {
         };
         let small = |x: f64| {
             let ball = Ball { center: DVec3::new(x, 0.0, -10.0), radius: 0.1 };
-            Region::new(ball.center, Reach::Everywhere, [Some(ball), None, None])
+            Region::new(ball.center, Reach::Everywhere, [Some(ball), None, None], None)
         };
         let mut regions = [Region::default(); MAX_LIGHTS];
         regions[0] = small(-5.0);

@@ -53,12 +53,14 @@ pub(super) fn pack(
     };
     let mut balls = [None; 3];
     let range = light.range.map(|range| world.distance(range));
+    let mut spot = None;
     if let Some(cone) = light.cone {
         let axis = world.direction(cone.direction).normalize();
         constants.axis_cosine = wide(axis, cone.outer.cos());
         // KHR_lights_punctual: full at the inner angle, nothing at the outer.
         let scale = 1.0 / (cone.inner.cos() - cone.outer.cos()).max(1e-3);
         constants.falloff_range[..2].copy_from_slice(&[scale as f32, (-cone.outer.cos() * scale) as f32]);
+        spot = Some((axis, cone.outer));
         balls[0] = range.map(|range| ball_of_cone(position, axis, cone.outer, range));
     }
     if let Some(range) = range {
@@ -72,7 +74,7 @@ pub(super) fn pack(
         constants.high = wide(ends[0].max(ends[1]), 0.0);
         balls[2] = Some(Ball { center: 0.5 * (ends[0] + ends[1]), radius: 0.5 * ends[0].distance(ends[1]) });
     }
-    Some((constants, Region::new(position, reached, balls)))
+    Some((constants, Region::new(position, reached, balls, spot)))
 }
 
 /// The smallest ball about a cone of half angle `outer` that ends at `range` from its apex.

@@ -29,7 +29,7 @@ fn light(i: usize) -> Light {
         2 => {
             let outer = 0.2 + a;
             let cone = Cone { direction: DVec3::new(b - 0.5, -1.0, 0.3), inner: 0.5 * outer, outer };
-            Light { cone: Some(cone), range: Some(2.0), ..point }
+            Light { cone: Some(cone), range: (i % 8 == 2).then_some(2.0), ..point }
         }
         _ => Light { bounds: Some(Bounds { low: position - 1.0, high: position + c }), ..point },
     }
