@@ -1,6 +1,7 @@
 //! Test support shared by the rooms: device fixture, comparison, golden files, data; and contract tests across rooms.
 #![expect(clippy::panic, reason = "helpers of tests fail the test they are called from")]
 
+pub mod chain;
 pub mod colours;
 pub mod compare;
 pub mod conformance;

@@ -3,8 +3,8 @@
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
     Binding, BindingDesc, BindingKind, Blend, Buffer, ColorAttachment, ComputePipeline, ComputePipelineDesc,
-    Context, Execution, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Image, Imports, Label, Load,
-    Location, Record, Recorder, Rendering, Timing, VertexAttribute, VertexBufferLayout,
+    Context, Execution, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Image, ImageView, Imports, Label,
+    Load, Location, Record, Recorder, Rendering, Timing, VertexAttribute, VertexBufferLayout,
 };
 use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, PassKind, State};
 
@@ -35,6 +35,23 @@ struct Parts {
     compute: ComputePipeline,
     draw: GraphicsPipeline,
     indices: Buffer,
+}
+
+/// Begins to draw points, one a pixel, in colours from a vertex buffer.
+///
+/// # Errors
+/// [`GpuError::Misuse`] for what does not fit.
+pub fn begin_points(
+    recorder: &mut Recorder<'_>,
+    pipeline: &GraphicsPipeline,
+    view: &ImageView,
+    colours: &Buffer,
+) -> Result<(), GpuError> {
+    let colors = [ColorAttachment { view, load: Load::Clear([-1.0; 4]) }];
+    recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
+    recorder.bind_graphics(pipeline, &[])?;
+    recorder.push_constants(&[WIDTH, HEIGHT])?;
+    recorder.bind_vertex_buffer(0, colours)
 }
 
 /// The compute pipeline of the test shader `colours`.
@@ -110,12 +127,7 @@ impl Workload {
         pass.read(&colours, Access::VertexBuffer);
         let drawn = pass.write(target, Access::ColorAttachmentWrite);
         pass.record(Box::new(move |recorder, resources| {
-            let view = resources.view(&drawn)?;
-            let colors = [ColorAttachment { view: &view, load: Load::Clear([-1.0; 4]) }];
-            recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
-            recorder.bind_graphics(&draw, &[])?;
-            recorder.push_constants(&[WIDTH, HEIGHT])?;
-            recorder.bind_vertex_buffer(0, resources.buffer(&colours)?)?;
+            begin_points(recorder, &draw, &resources.view(&drawn)?, resources.buffer(&colours)?)?;
             recorder.bind_index_buffer(&indices)?;
             recorder.draw_indexed(0..COUNT, 0, 0..1)?;
             recorder.end_rendering()

@@ -12,12 +12,11 @@ use airglow_tests::compare::{assert_close, assert_same_bits};
 use airglow_tests::device::{Fixture, fixture};
 use airglow_tests::plan::compile_with;
 use airglow_tests::spirv::words;
+use airglow_tests::workload::{HEIGHT, WIDTH, begin_points};
 use std::collections::BTreeSet;
 
 /// Vertices; not a multiple of the width, so that the copy ends within a row.
 const COUNT: u32 = 1000;
-const WIDTH: u32 = 64;
-const HEIGHT: u32 = 16;
 const TINT: [f32; 4] = [2.0, 0.5, 1.0, 1.0];
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const TINT_BINDING: BindingDesc = BindingDesc::new(1, BindingKind::UniformBuffer);
@@ -125,12 +124,7 @@ fn add_draw(
     pass.read(&colours, Access::VertexBuffer);
     let drawn = pass.write(target, Access::ColorAttachmentWrite);
     pass.record(Box::new(move |recorder, resources| {
-        let view = resources.view(&drawn)?;
-        let colors = [ColorAttachment { view: &view, load: Load::Clear([-1.0; 4]) }];
-        recorder.begin_rendering(&Rendering { colors: &colors, depth: None })?;
-        recorder.bind_graphics(&pipeline, &[])?;
-        recorder.push_constants(&[WIDTH, HEIGHT])?;
-        recorder.bind_vertex_buffer(0, resources.buffer(&colours)?)?;
+        begin_points(recorder, &pipeline, &resources.view(&drawn)?, resources.buffer(&colours)?)?;
         recorder.draw(0..COUNT, 0..1)?;
         recorder.end_rendering()
     }));

@@ -13,24 +13,19 @@ use airglow_relight::{
     reference,
 };
 use glam::{DQuat, DVec3, Mat4};
+use host::falling::Falling;
 use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 /// A mesh in motion and everything that can fall on it.
 struct Input {
     order: usize,
     normals: Vec<[f32; 3]>,
-    light: Vec<[f32; 3]>,
-    vertex_light: Vec<[f32; 3]>,
-    visibility: Vec<f32>,
-    turn: DQuat,
-    rotation: DQuat,
+    falling: Falling,
 }
 
 impl Input {
     fn new(order: usize, vertices: usize) -> Self {
-        let (count, mut numbers) = (order * order, Numbers::new(50 + order as u64));
-        let mut turn = || DQuat::from_xyzw(numbers.next(), numbers.next(), numbers.next(), numbers.next());
-        let (turn, rotation) = (turn(), turn());
+        let mut numbers = Numbers::new(50 + order as u64);
         let mut normals = numbers.rgb(vertices);
         // Lengths over the whole proven domain, the axes, and a vertex without a normal.
         for (i, normal) in normals.iter_mut().enumerate() {
@@ -40,45 +35,26 @@ impl Input {
         normals[7] = [0.0; 3];
         normals[8] = [0.0, 0.0, -2.0];
         normals[9] = [3.0, 0.0, 0.0];
-        let light = numbers.rgb(count);
-        let vertex_light = numbers.rgb(count * vertices);
-        Self {
-            order,
-            normals,
-            light,
-            vertex_light,
-            visibility: numbers.values(count * vertices),
-            turn,
-            rotation,
-        }
+        Self { order, normals, falling: Falling::new(&mut numbers, order, vertices) }
     }
 
     fn run(&self, bench: &Bench<'_>, settings: Settings, limits: Option<&ChunkLimits>) -> Vec<f32> {
         let settings = Settings { order: self.order, ..settings };
-        let mut relight = match limits {
-            Some(limits) => Relight::with_chunk_limits(bench.context, settings, limits),
-            None => Relight::new(bench.context, settings),
-        }
-        .unwrap();
-        let mesh = relight.add_mesh(bench.context, "skinned", self.normals.len() as u32, None).unwrap();
-        let light = match settings.light {
-            LightKind::Uniform => CaseLight::Uniform(&self.light, self.turn),
-            LightKind::Vertex => CaseLight::Vertices(&self.vertex_light),
-        };
-        let case = Case {
-            orientation: self.rotation.into(),
-            visibility: settings.visibility.then_some(&self.visibility[..]),
-            normals: settings.normals.then_some(&self.normals[..]),
-            ..Case::new(light, mesh)
-        };
-        bench.results(&mut relight, &case).unwrap()
+        let normals = settings.normals.then_some(&self.normals[..]);
+        self.falling.run(bench, settings, limits, self.normals.len(), (None, normals))
     }
 
     /// Runs and compares every vertex with the reference: error / (norm of t times norm of l).
     fn check(&self, bench: &Bench<'_>, settings: Settings, limits: Option<&ChunkLimits>) -> Vec<f32> {
         let count = self.order * self.order;
         let values = self.run(bench, settings, limits);
-        let uniform = reference::light(self.order, &wide_rgb(&self.light), self.turn, self.rotation).unwrap();
+        let uniform = reference::light(
+            self.order,
+            &wide_rgb(&self.falling.light),
+            self.falling.turn,
+            self.falling.rotation,
+        )
+        .unwrap();
         let tensor = TripleProduct::new(self.order).unwrap();
         let mut worst: f64 = 0.0;
         for (vertex, normal) in self.normals.iter().enumerate() {
@@ -87,9 +63,9 @@ impl Input {
                 reference::unshadowed(self.order, DVec3::from_array(normal.map(f64::from))).unwrap();
             let light = match settings.light {
                 LightKind::Uniform => uniform.clone(),
-                LightKind::Vertex => wide_rgb(&self.vertex_light[of_vertex.clone()]),
+                LightKind::Vertex => wide_rgb(&self.falling.vertex_light[of_vertex.clone()]),
             };
-            let seen = wide(&self.visibility[of_vertex]);
+            let seen = wide(&self.falling.visibility[of_vertex]);
             let expected = match settings.visibility {
                 true => reference::shadowed_colour(&tensor, &transfer, &light, &seen).unwrap(),
                 false => reference::colour(&transfer, &light),
@@ -184,10 +160,15 @@ fn incident_radiance_of_an_open_mesh_is_the_light() {
             for light in [LightKind::Uniform, LightKind::Vertex] {
                 let settings = Settings { output: Output::Incident, light, ..Settings::default() };
                 let values = input.run(bench, settings, None);
-                let uniform = reference::light(order, &wide_rgb(&input.light), input.turn, input.rotation);
+                let uniform = reference::light(
+                    order,
+                    &wide_rgb(&input.falling.light),
+                    input.falling.turn,
+                    input.falling.rotation,
+                );
                 let expected = match light {
                     LightKind::Uniform => uniform.unwrap().repeat(input.normals.len()),
-                    LightKind::Vertex => wide_rgb(&input.vertex_light),
+                    LightKind::Vertex => wide_rgb(&input.falling.vertex_light),
                 };
                 assert_eq!(values.len(), 3 * expected.len());
                 for (actual, expected) in values.iter().zip(expected.as_flattened()) {

@@ -9,32 +9,20 @@ use airglow_relight::pack::ChunkLimits;
 use airglow_relight::{
     Bench, Case, CaseLight, LightKind, Method, Output, Relight, Settings, Storage, reference,
 };
-use glam::DQuat;
+use host::falling::Falling;
 use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 /// A mesh and everything that can fall on it.
 struct Input {
     vectors: Vec<f32>,
-    light: Vec<[f32; 3]>,
-    vertex_light: Vec<[f32; 3]>,
-    visibility: Vec<f32>,
-    turn: DQuat,
-    rotation: DQuat,
+    falling: Falling,
 }
 
 impl Input {
     fn new(order: usize, vertices: usize) -> Self {
-        let (count, mut numbers) = (order * order, Numbers::new(order as u64));
-        let mut turn = || DQuat::from_xyzw(numbers.next(), numbers.next(), numbers.next(), numbers.next());
-        let (turn, rotation) = (turn(), turn());
-        Self {
-            vectors: numbers.values(count * vertices),
-            light: numbers.rgb(count),
-            vertex_light: numbers.rgb(count * vertices),
-            visibility: numbers.values(count * vertices),
-            turn,
-            rotation,
-        }
+        let mut numbers = Numbers::new(order as u64);
+        let vectors = numbers.values(order * order * vertices);
+        Self { vectors, falling: Falling::new(&mut numbers, order, vertices) }
     }
 
     /// What the GPU gives, and the result of each vertex by the reference with the scale of its error.
@@ -42,8 +30,13 @@ impl Input {
         let count = settings.coefficients();
         let vertices = self.vectors.len() / count;
         let values = self.run(bench, settings, limits);
-        let uniform =
-            reference::light(settings.order, &wide_rgb(&self.light), self.turn, self.rotation).unwrap();
+        let uniform = reference::light(
+            settings.order,
+            &wide_rgb(&self.falling.light),
+            self.falling.turn,
+            self.falling.rotation,
+        )
+        .unwrap();
         let tensor = TripleProduct::new(settings.order).unwrap();
         let tolerance = if settings.storage == Storage::F16 { 1e-3 } else { 1e-5 };
         let stride = settings.output_bytes() as usize / 4;
@@ -51,10 +44,10 @@ impl Input {
         for vertex in 0..vertices {
             let of_vertex = vertex * count..(vertex + 1) * count;
             let baked = wide(&self.vectors[of_vertex.clone()]);
-            let seen = wide(&self.visibility[of_vertex.clone()]);
+            let seen = wide(&self.falling.visibility[of_vertex.clone()]);
             let light = match settings.light {
                 LightKind::Uniform => uniform.clone(),
-                LightKind::Vertex => wide_rgb(&self.vertex_light[of_vertex]),
+                LightKind::Vertex => wide_rgb(&self.falling.vertex_light[of_vertex]),
             };
             let dynamic = settings.visibility.then_some(&seen[..]);
             let expected = match (settings.output, dynamic) {
@@ -83,20 +76,8 @@ impl Input {
     }
 
     fn run(&self, bench: &Bench<'_>, settings: Settings, limits: Option<&ChunkLimits>) -> Vec<f32> {
-        let vertices = (self.vectors.len() / settings.coefficients()) as u32;
-        let mut relight = match limits {
-            Some(limits) => Relight::with_chunk_limits(bench.context, settings, limits),
-            None => Relight::new(bench.context, settings),
-        }
-        .unwrap();
-        let mesh = relight.add_mesh(bench.context, "mesh", vertices, Some(&self.vectors)).unwrap();
-        let light = match settings.light {
-            LightKind::Uniform => CaseLight::Uniform(&self.light, self.turn),
-            LightKind::Vertex => CaseLight::Vertices(&self.vertex_light),
-        };
-        let visibility = settings.visibility.then_some(&self.visibility[..]);
-        let case = Case { orientation: self.rotation.into(), visibility, ..Case::new(light, mesh) };
-        bench.results(&mut relight, &case).unwrap()
+        let vertices = self.vectors.len() / settings.coefficients();
+        self.falling.run(bench, settings, limits, vertices, (Some(&self.vectors), None))
     }
 }
 
@@ -141,15 +122,15 @@ fn incident_radiance_from_half_floats_and_from_dynamic_visibility_alone() {
             let mut relight = Relight::new(bench.context, settings).unwrap();
             let mesh = relight.add_mesh(bench.context, "moving", 90, None).unwrap();
             let case_light = match light {
-                LightKind::Uniform => CaseLight::Uniform(&input.light, input.turn),
-                LightKind::Vertex => CaseLight::Vertices(&input.vertex_light),
+                LightKind::Uniform => CaseLight::Uniform(&input.falling.light, input.falling.turn),
+                LightKind::Vertex => CaseLight::Vertices(&input.falling.vertex_light),
             };
-            let visibility = Some(&input.visibility[..]);
-            let orientation = input.rotation.into();
+            let visibility = Some(&input.falling.visibility[..]);
+            let orientation = input.falling.rotation.into();
             let case = Case { orientation, visibility, ..Case::new(case_light, mesh) };
             let values = bench.results(&mut relight, &case).unwrap();
             // With dynamic visibility in the place of the static one the result is the same.
-            let baked = Input { vectors: input.visibility.clone(), ..Input::new(3, 90) };
+            let baked = Input { vectors: input.falling.visibility.clone(), ..Input::new(3, 90) };
             assert_eq!(values, baked.run(bench, Settings { visibility: false, ..settings }, None));
         }
     });

@@ -3,6 +3,7 @@
 
 pub mod draw;
 pub mod ellipsoid;
+pub mod falling;
 
 use airglow_relight::{Bench, Method, Relight, Settings};
 use airglow_tests::device::{Fixture, fixture_with};
