@@ -1,5 +1,7 @@
 //! Kernels run one frame at a time, submitted and waited for by a host: what tests and evaluation use.
 
+use std::path::Path;
+
 use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout, ImageViewType};
 use airglow_gpu::{
     Buffer, ComputePipeline, Context, GpuError, Label, Location, Readback, Recorder, ViewDesc,
@@ -10,6 +12,7 @@ use bytemuck::Pod;
 use crate::NormalsError;
 use crate::brdf::{Brdf, Directions};
 use crate::build::{Build, LobeTexture};
+use crate::cache::{self, Miss, PackedChain};
 use crate::kernels::{self, RowConstants};
 use crate::map::NormalMap;
 use crate::mixture::{MAX_LOBES, WeightedLobe};
@@ -43,6 +46,15 @@ pub struct Row {
     pub brdf: Brdf,
     /// Light and view.
     pub directions: Directions,
+}
+
+/// Where a chain came from.
+#[derive(Debug)]
+pub enum Source {
+    /// The file held it.
+    Cache,
+    /// It was built and stored, because the file could not be used.
+    Built(Miss),
 }
 
 /// The lobes of a level, `lobes` a texel, row by row, as the device left them: moment and weight.
@@ -119,6 +131,36 @@ impl Bench<'_> {
         let mut build = Normals::new(self.context, *settings)?.build(self.context, map)?;
         self.steps(&mut build)?;
         Ok(build.texture().cloned())
+    }
+
+    /// The texture of a map and its chain, from the file at `path` if that holds this very chain, or built and stored there;
+    /// either way the same bits. None for a map of one texel.
+    ///
+    /// # Errors
+    /// As [`Bench::build`], and [`NormalsError::Store`] where the file cannot be written.
+    pub fn cached(
+        &self,
+        path: &Path,
+        map: &NormalMap,
+        settings: &Settings,
+    ) -> Result<(Option<LobeTexture>, Source), NormalsError> {
+        let normals = Normals::new(self.context, *settings)?;
+        let (mut build, source) = match cache::load(path, map, settings) {
+            Ok(chain) => (normals.upload(self.context, map, &chain)?, Source::Cache),
+            Err(miss) => (normals.build(self.context, map)?, Source::Built(miss)),
+        };
+        self.steps(&mut build)?;
+        if matches!(source, Source::Built(_)) {
+            let mut copies = Vec::new();
+            self.frame(&mut |recorder| {
+                recorder.memory_barrier(Access::ComputeStorageWrite, Access::TransferSource)?;
+                copies = build.read_back(recorder)?;
+                Ok(())
+            })?;
+            let levels = copies.iter().map(Readback::read).collect::<Result<_, _>>()?;
+            cache::store(path, map, settings, &PackedChain { levels })?;
+        }
+        Ok((build.texture().cloned(), source))
     }
 
     /// The bytes of each mip of a texture, layer by layer.

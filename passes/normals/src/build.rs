@@ -1,10 +1,11 @@
 //! One map on its way to a texture: steps that a host records at once or over several frames.
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, ImageUsageFlags};
-use airglow_gpu::{Buffer, Context, GpuError, Image, Label, Location};
+use airglow_gpu::{Buffer, Context, GpuError, Image, Label, Location, Readback, Recorder};
 use airglow_graph::{Access, BufferDesc, ImageDesc, LeftOut};
 
 use crate::NormalsError;
+use crate::cache::PackedChain;
 use crate::chain::{self, Level};
 use crate::kernels::{AlignConstants, FitConstants, PackConstants};
 use crate::map::NormalMap;
@@ -94,12 +95,37 @@ impl Normals {
         Ok(build)
     }
 
-    /// The texture of a chain; none for a chain without levels.
-    pub(crate) fn texture(
+    /// Prepares the texture of a chain that was kept: one step copies it.
+    ///
+    /// # Errors
+    /// [`NormalsError::Budget`], [`NormalsError::Chain`] for levels that are not the map's, [`NormalsError::Gpu`].
+    pub fn upload(
         &self,
         context: &Context,
-        levels: &[Level],
-    ) -> Result<Option<LobeTexture>, NormalsError> {
+        map: &NormalMap,
+        chain: &PackedChain,
+    ) -> Result<Build, NormalsError> {
+        let levels = chain::levels(map, &self.settings)?;
+        let sizes = |level: &Level| usize::try_from(level.bytes).ok();
+        if !levels.iter().map(sizes).eq(chain.levels.iter().map(|bytes| Some(bytes.len()))) {
+            return Err(NormalsError::Chain);
+        }
+        let mut build = Build::empty(map);
+        let Some(texture) = self.texture(context, &levels)? else { return Ok(build) };
+        for bytes in &chain.levels {
+            let desc = BufferDesc { size: bytes.len() as u64, usage: BufferUsageFlags::TRANSFER_SRC };
+            let buffer = context.create_buffer(Label::new(OWNER, "kept lobes"), &desc, Location::Upload)?;
+            buffer.write(0, bytes)?;
+            build.packed.push(buffer);
+        }
+        build.stages.push(copy(&build.packed, &texture));
+        build.texture = Some(texture);
+        build.levels = levels;
+        Ok(build)
+    }
+
+    /// The texture of a chain; none for a chain without levels.
+    fn texture(&self, context: &Context, levels: &[Level]) -> Result<Option<LobeTexture>, NormalsError> {
         let Some(finest) = levels.first() else { return Ok(None) };
         let [width, height] = finest.size.map(|size| size as u32);
         let desc = ImageDesc {
@@ -246,6 +272,16 @@ impl Build {
         let first = self.next;
         self.next = self.stages.len().min(first.saturating_add(most));
         &self.stages[first..self.next]
+    }
+
+    /// Copies what the texture gets for the CPU, to be kept by [`crate::cache::store`]: all steps but the copy into the
+    /// texture are done, and the host has made a barrier from [`Access::ComputeStorageWrite`] to
+    /// [`Access::TransferSource`]. One copy a level, finest first.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`] where there is none left for the copies.
+    pub fn read_back(&self, recorder: &mut Recorder<'_>) -> Result<Vec<Readback>, GpuError> {
+        self.packed.iter().map(|packed| recorder.read_back_buffer(packed)).collect()
     }
 
     /// A buffer that steps use; the texture is none.

@@ -54,9 +54,10 @@ impl Build {
             return Some(Named::Image(handle));
         }
         let buffer = self.buffer(resource)?;
-        // Steps of an earlier frame may have written what later ones read; normals were there before any frame.
+        // Steps of an earlier frame may have written what later ones read; normals and kept lobes were there before any.
         let state = match resource {
             Resource::Normals => State::UNDEFINED,
+            _ if self.normals.is_none() => State::UNDEFINED,
             _ => State::of(Access::ComputeStorageReadWrite),
         };
         let name = format!("{resource:?}");

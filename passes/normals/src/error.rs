@@ -3,6 +3,8 @@
 use airglow_gpu::GpuError;
 use airglow_math::MathError;
 
+use crate::cache::StoreError;
+
 /// Why an input was refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -62,10 +64,22 @@ pub enum NormalsError {
         /// The next setting that fits.
         mend: String,
     },
+    /// A chain that is not of its map.
+    #[error("normals: the chain has not the levels of its map: build it from this map with these settings")]
+    Chain,
+    /// A chain that could not be kept in a file.
+    #[error("normals: {0}")]
+    Store(#[source] Box<StoreError>),
     /// A refusal of the device layer.
     #[error("normals: {0}")]
     Gpu(#[from] GpuError),
     /// A refusal of the mathematics.
     #[error("normals: {0}")]
     Math(#[from] MathError),
+}
+
+impl From<StoreError> for NormalsError {
+    fn from(error: StoreError) -> Self {
+        Self::Store(Box::new(error))
+    }
 }

@@ -25,6 +25,7 @@ pub mod averages;
 pub mod bench;
 mod brdf;
 mod build;
+pub mod cache;
 pub mod chain;
 mod declare;
 mod error;

@@ -4,7 +4,8 @@ use airglow_gpu::open::{FrameLoop, FrameSemaphores};
 use airglow_gpu::{Execution, Imports, Recorder};
 use airglow_graph::{Graph, Limits};
 use airglow_math::statistics::relative_l2;
-use airglow_normals::bench::LevelLobes;
+use airglow_normals::bench::{LevelLobes, Source};
+use airglow_normals::cache::ChainKey;
 use airglow_normals::{
     Brdf, FitSettings, Mixture, NormalMap, Normals, Settings, Storage, WeightedLobe, reference, shade,
 };
@@ -236,4 +237,45 @@ fn both_roads_and_any_number_of_frames_give_the_same_bits() {
     let single = NormalMap::from_vectors(1, 1, &[[0.0, 0.0, 1.0]]).unwrap();
     let build = normals.build(context, &single).unwrap();
     assert!(build.texture().is_none() && build.progress().total == 0);
+}
+
+#[test]
+fn kept_chains_are_the_same_bits_and_spoiled_files_are_built_again() {
+    let (map, other) = (common::weave(32), common::groove(32));
+    let settings = Settings::default();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(ChainKey::new(&map, &settings).to_hex());
+    with_bench(|bench| {
+        let seen = |map: &NormalMap, settings: &Settings| {
+            let (texture, source) = bench.cached(&path, map, settings).unwrap();
+            let miss = match source {
+                Source::Cache => None,
+                Source::Built(miss) => Some(miss.to_string()),
+            };
+            (bench.bytes(&texture.unwrap()).unwrap(), miss)
+        };
+        let (built, miss) = seen(&map, &settings);
+        assert!(miss.unwrap().contains("cannot be read"));
+        assert_eq!(seen(&map, &settings), (built.clone(), None));
+        let whole = std::fs::read(&path).unwrap();
+        for (spoiled, word) in [
+            (whole[..whole.len() - 1].to_vec(), "damaged"),
+            (whole[..20].to_vec(), "damaged"),
+            (Vec::new(), "damaged"),
+            ([&whole[..whole.len() - 9], &[77], &whole[whole.len() - 8..]].concat(), "checksum"),
+        ] {
+            std::fs::write(&path, spoiled).unwrap();
+            let (bytes, miss) = seen(&map, &settings);
+            assert_eq!(bytes, built);
+            assert!(miss.as_ref().is_some_and(|miss| miss.contains(word)), "{miss:?} is not {word}");
+        }
+        for (map, settings) in [(&other, settings), (&map, Settings { storage: Storage::Snorm8, ..settings })]
+        {
+            assert!(seen(map, &settings).1.unwrap().contains("another map"));
+        }
+        let nowhere = folder.path().join("missing").join("file");
+        let error = bench.cached(&nowhere, &map, &settings).err().unwrap().to_string();
+        assert!(error.contains("missing") && error.contains("folder"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing half-written stays");
+    });
 }
