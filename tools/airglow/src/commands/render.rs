@@ -20,6 +20,8 @@ use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
 use crate::host::{device, truth};
 use crate::measure::health::{self, Count};
+#[cfg(feature = "fog")]
+use crate::measure::lights::LightStat;
 use crate::measure::pass::{PassStat, counted};
 use crate::measure::profiler::ProfilerCost;
 use crate::measure::trace::{self, Trace};
@@ -157,6 +159,9 @@ struct Stat {
     record_ms: f64,
     /// What measuring adds to a frame; with --stat alone.
     profiler: Option<ProfilerCost>,
+    /// Which lights the fog pass evaluates in each view.
+    #[cfg(feature = "fog")]
+    lights: Vec<LightStat>,
     /// What the passes counted; with --health, where they have anything to count.
     health: Vec<Count>,
     /// Device memory by owner.
@@ -322,6 +327,8 @@ fn stat(
         coverage: timing.map(|timing| timing.coverage),
         record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
         profiler,
+        #[cfg(feature = "fog")]
+        lights: picture.lights.clone(),
         health: Vec::new(),
         memory: device
             .context()
@@ -346,6 +353,8 @@ fn text(stat: &Stat) -> String {
         _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
     }
     text.push_str(&stat.profiler.as_ref().map_or(String::new(), ProfilerCost::text));
+    #[cfg(feature = "fog")]
+    text.extend(stat.lights.iter().map(LightStat::line));
     text.extend(stat.health.iter().map(Count::line));
     for owner in &stat.memory {
         text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));

@@ -29,6 +29,8 @@ use super::unread;
 use super::upload;
 use super::view::{self, ViewConstants};
 use crate::failure::{Failure, Outcome};
+#[cfg(feature = "fog")]
+use crate::measure::lights::LightStat;
 use crate::measure::pass::{self, PassWork};
 
 /// Everything a frame is declared from.
@@ -75,6 +77,9 @@ pub struct Picture {
     pub cpu_milliseconds: Vec<f64>,
     /// What each pass does.
     pub passes: Vec<PassWork>,
+    /// The lights of the fog pass in each view of the last frame.
+    #[cfg(feature = "fog")]
+    pub lights: Vec<LightStat>,
     /// The frames that were timed, oldest first.
     pub frames: Vec<FrameTimes>,
     /// The clocks of device and CPU before and after the frames; `None` where the device does not tell.
@@ -353,6 +358,8 @@ impl<'d> Renderer<'d> {
             timing: timing.as_ref().and_then(Timing::summary),
             cpu_milliseconds,
             passes: pass::work(&execution),
+            #[cfg(feature = "fog")]
+            lights: turning.fog.iter().map(|control| control.counts().into()).collect(),
             frames: timing.iter().flat_map(Timing::frames).cloned().collect(),
             calibrations: before.zip(after).map(|(before, after)| [before, after]),
         })

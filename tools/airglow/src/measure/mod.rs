@@ -1,6 +1,8 @@
 //! What passes do and take: counts beside times, what measuring costs, and all of it on a time line.
 
 pub mod health;
+#[cfg(feature = "fog")]
+pub mod lights;
 pub mod pass;
 pub mod profiler;
 pub mod trace;

@@ -269,28 +269,6 @@ impl Measurement<'_> {
     }
 }
 
-/// The tables of a curve by their size: figure 3.6 of the thesis.
-pub fn table_sizes(curve: &Curve) -> Curve {
-    let tables = curve.points.iter().filter(|point| point.setting.starts_with("table"));
-    let median = |point: &Point| {
-        let setting = point.distribution.map(|found| found.median);
-        Point { error: Errors { setting, ..Errors::default() }, ..point.clone() }
-    };
-    Curve {
-        knob: "size of the table (figure 3.6)".to_owned(),
-        question: "How does the error of the table of F(u, v) fall with its size, nearest and bilinear, where it \
-                   neither ends nor overflows?"
-            .to_owned(),
-        norm: "setting: median relative error. The thesis divides by the airlight of the whole hemisphere and takes the \
-               mean, which hides the rays far from the light"
-            .to_owned(),
-        timed: curve.timed.clone(),
-        points: tables.map(median).collect(),
-        chosen: None,
-        comparisons: Vec::new(),
-    }
-}
-
 /// What the evaluators run on.
 struct Course<'a> {
     /// Rays: all pixels of the first light, then all of the next.

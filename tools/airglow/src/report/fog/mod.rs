@@ -7,6 +7,7 @@ mod orders;
 mod pass;
 mod picture;
 mod random;
+mod table_sizes;
 
 use airglow_scene::Scene;
 
@@ -44,7 +45,7 @@ impl Measurement<'_> {
         numbers.extend(numbers::times(&whole, &of_table)?);
         numbers.extend(numbers::seen(&knobs[0]));
         numbers.extend(numbers::lights(&lights));
-        let sizes = evaluators::table_sizes(&of_table);
+        let sizes = table_sizes::curve(&of_table)?;
         let mut curves = vec![whole, of_table, sizes, seen];
         curves.extend(knobs);
         curves.push(lights);
