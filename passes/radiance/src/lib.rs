@@ -1,6 +1,32 @@
 //! Incident radiance of emitters that are near: light vectors that differ from vertex to vertex.
 //!
-//! Yu-Hsian Sun, "Effective Sampling and Reconstruction of Incident Radiance for Spherical Harmonic Lighting" (2005).
+//! Yu-Hsian Sun, "Effective Sampling and Reconstruction of Incident Radiance for Spherical Harmonic Lighting" (2005). At
+//! few points, chosen by a tree over the vertices and an oracle, light is sampled by cube maps and projected; vertices take
+//! it from the samples whose domains hold them:
+//! ```text
+//! l_k = Integral L(x_k, s) Y(s) ds            a sample at x_k
+//! l_p = sum w_k (l_k + G_k (p - x_k)) / sum w_k    a vertex at p; G_k the gradients of the sample
+//! B_p = t_p . l_p                             its colour, by the relight pass
+//! ```
+//!
+//! ```no_run
+//! use airglow_gpu::{Context, Imports, Record};
+//! use airglow_graph::Graph;
+//! use airglow_radiance::{Hierarchy, Lights, Part, PassSettings, Radiance, Receiver, Triangle};
+//! use std::ops::ControlFlow;
+//!
+//! # fn host(context: &Context, graph: &mut Graph<Record>, imports: &mut Imports, positions: &[[f32; 3]],
+//! #     transfer: &[f32], lamp: &[Triangle]) -> Result<(), airglow_radiance::RadianceError> {
+//! let settings = PassSettings::default();
+//! let tree = Hierarchy::build(positions, transfer, &mut |_, _| ControlFlow::Continue(()))?;
+//! let part = Part { vertices: 0..positions.len() as u32, turn: None };
+//! let receiver = Receiver::new(context, settings, &tree, positions, &[part])?;
+//! let radiance = Radiance::new(context, settings)?;
+//! let lit = radiance.add(graph, imports, &receiver, &Lights { emitters: lamp, distant: &[] })?;
+//! // … relight reads lit.light[0] as the light of each vertex; lit.control moves the lamp …
+//! # Ok(())
+//! # }
+//! ```
 #![forbid(unsafe_code)]
 
 mod control;
