@@ -6,8 +6,8 @@ mod common;
 
 use airglow_math::statistics::relative_l2;
 use airglow_normals::rivals::{self, Lean};
-use airglow_normals::{Brdf, Directions, FitSettings, Harmonics, Mixture, NormalMap, Sample};
-use airglow_normals::{fit, reference, shade};
+use airglow_normals::{Brdf, Directions, FitSettings, Harmonics, Method, Mixture, NormalMap, Sample};
+use airglow_normals::{choose, fit, reference, shade};
 use common::{Random, directions};
 
 const BRDFS: [Brdf; 7] = [
@@ -137,4 +137,24 @@ fn measured_maps() {
         let taps = errors.iter().map(|errors| errors[method("vmf:4 x 4")]);
         assert!(taps.clone().all(|error| error <= 0.08), "{name}, four taps: {:?}", taps.collect::<Vec<_>>());
     }
+}
+
+#[test]
+fn a_material_gets_what_it_needs() {
+    let glossy = Brdf::BlinnPhong { exponent: 50.0 };
+    let flat = NormalMap::from_vectors(64, 64, &[[0.1, 0.2, 1.0]; 4096]).unwrap();
+    for (name, map, brdf, expected) in [
+        ("flat", &flat, glossy, Method::Lobes(1)),
+        ("grain", &common::grain(64), Brdf::Lambert, Method::Lobes(1)),
+        ("groove", &common::groove(64), glossy, Method::Lobes(2)),
+        ("weave", &common::weave(64), glossy, Method::Lobes(4)),
+    ] {
+        let choice = choose(map, brdf, 0.04).unwrap();
+        println!("{name}, {brdf:?}: {} with {:.2} %", choice.method, 100.0 * choice.error);
+        assert!(choice.within && choice.method == expected, "{name}: {choice:?}");
+        assert_eq!(choice.left_out.is_some(), expected != Method::Lobes(4), "{name}: {choice:?}");
+    }
+    let choice = choose(&common::grain(64), Brdf::BlinnPhong { exponent: 10_000.0 }, 0.01).unwrap();
+    assert!(!choice.within && choice.error > 0.01 && choice.left_out.is_none(), "{choice:?}");
+    assert!(choose(&flat, glossy, 0.0).is_err() && choose(&flat, Brdf::Ggx { alpha: 0.0 }, 0.1).is_err());
 }
