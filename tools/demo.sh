@@ -22,7 +22,7 @@ while [ $# -gt 0 ]; do
 done
 
 say "demo of airglow: build, bake, draw, measure"
-echo "Expect 6 to 12 minutes on two cores the first time, most of it building; about 2 minutes after that."
+echo "Expect 6 to 12 minutes on two cores the first time, most of it building; about 3 minutes after that."
 
 require_toolchain
 packages=(libvulkan1)
@@ -45,8 +45,8 @@ say "baking and drawing $scene"
 "$airglow" render "$scene" "${device[@]}" --without relight --split -o out/demo-split.png --quiet > /dev/null
 street=assets/scenes/street.toml
 say "drawing $street"
-"$airglow" render "$street" "${device[@]}" -o out/street.png --stat out/street.json
-"$airglow" render "$street" "${device[@]}" --without fog --split --frames 1 -o out/street-split.png --quiet > /dev/null
+"$airglow" render "$street" "${device[@]}" -o out/street.png --frames 5 --stat out/street.json
+"$airglow" render "$street" "${device[@]}" --compare-fog --size 640x480 --frames 1 -o out/street-airs.png --quiet > /dev/null
 say "the plan"
 "$airglow" plan "$scene" "${device[@]}" | tee out/plan.txt
 say "measuring error against time"
@@ -54,7 +54,7 @@ say "measuring error against time"
 
 say "done in $SECONDS s"
 echo "picture          $PWD/out/demo.png (out/demo-split.png: left half without the pass)"
-echo "picture          $PWD/out/street.png (out/street-split.png: left half in clear air)"
+echo "picture          $PWD/out/street.png (out/street-airs.png: in clear air, in depth fog, in fog)"
 echo "timings          $PWD/out/demo.json, $PWD/out/street.json"
 echo "plan             $PWD/out/plan.txt"
 find "$PWD/out/report" -name '*.html' -printf 'error/time plot  %p\n'
