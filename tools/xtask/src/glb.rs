@@ -42,7 +42,8 @@ impl Buffers {
         self.accessor(bytemuck::cast_slice(coordinates), description)
     }
 
-    fn accessor(&mut self, bytes: &[u8], mut description: Value) -> usize {
+    /// Adds what `description` says of the bytes; returns the accessor.
+    pub fn accessor(&mut self, bytes: &[u8], mut description: Value) -> usize {
         self.views.push(json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()}));
         self.bytes.extend_from_slice(bytes);
         description["bufferView"] = json!(self.views.len() - 1);

@@ -19,6 +19,7 @@ mod room_lines;
 mod shaders;
 mod street;
 mod translate;
+mod walker;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -72,6 +73,8 @@ enum Command {
     Products,
     /// Make assets/mesh/street.glb, the scene of lamps in fog
     Street,
+    /// Make assets/mesh/walker.glb, a figure with a skin that walks
+    Walker,
     /// Make assets/normalmap and the meshes of the two scenes that show it, grooves.glb and weave.glb
     Relief,
 }
@@ -95,6 +98,7 @@ fn run(command: Command) -> Result<(), error::Error> {
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
         Command::Street => street::make(&workspace().join("assets")),
+        Command::Walker => walker::make(&workspace().join("assets")),
         Command::Products => products::make(&glsl),
         Command::Relief => relief::make(&workspace().join("assets")),
         Command::Room { name, remove: false } => room::make(&workspace(), &name),

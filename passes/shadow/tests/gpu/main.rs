@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
+mod graph;
 mod layout;
 mod rows;
 mod spheres;
