@@ -183,14 +183,19 @@ void main()
             rays[i].plane = vec3(0.0);
 #endif
         }
+        uint met = 0u;
         for (uint first = 0u; first < settings.triangle_count; first += uint(LANES)) {
             uint count = gather(face, point, first, low, low + tile_side);
+            met += count;
             for (uint i = 0u; i < count; ++i) { meet(tile_seen[i], middle, side, rays); }
             barrier();
         }
         bool inside = max(place.x, place.y) < settings.size;
         float solid_angle = inside ? solid_angles[place.y * settings.size + place.x] : 0.0;
-        sums_add(texel_of(face, middle, side, solid_angle, rays), sums);
+        // A loop, not a branch: software drivers run through a branch that nobody takes.
+        for (uint once = 0u; once < min(met, 1u); ++once) {
+            sums_add(texel_of(face, middle, side, solid_angle, rays), sums);
+        }
     }
     sums_write(sums, lane, wanted);
 }
