@@ -86,10 +86,18 @@ impl SceneOptions {
         }
         if let Some(path) = &self.environment {
             let environment = airglow_scene::image_io::read_environment(path).map_err(Failure::input)?;
-            scene.environment = Some(environment);
+            let distance = scene.environment.and_then(|stated| stated.distance);
+            scene.environment = Some(airglow_scene::Environment { distance, ..environment });
         }
         #[cfg(all(feature = "radiance", feature = "relight"))]
         crate::host::near::place(&mut scene);
+        let endless = scene.environment.as_ref().is_some_and(|environment| environment.distance.is_none());
+        if endless && scene.medium.is_some() {
+            output.warn(
+                "no light of the environment comes through the medium without end before it; state `distance`, metres, \
+                 in [environment] of the scene file",
+            );
+        }
         let quality = &mut scene.quality;
         *quality = Quality {
             order: self.order.unwrap_or(quality.order),

@@ -23,10 +23,13 @@ impl From<Counts> for LightStat {
 }
 
 impl LightStat {
-    /// A line of the text.
+    /// A line of the text; nothing without a light.
     pub fn line(&self) -> String {
         let Self { evaluated, left_out, pairs, pairs_left_out } = self;
         let (lights, all) = (evaluated + left_out, pairs + pairs_left_out);
+        if lights == 0 {
+            return String::new();
+        }
         format!(
             "  fog: {left_out} of {lights} lights left out, {pairs_left_out} of {all} pairs of a tile and a light\n"
         )
