@@ -247,7 +247,7 @@ fn lit(mut triangles: Vec<Triangle>, radiance: f64) -> Vec<Triangle> {
 /// Five squares of row `row` of a wall of lamps.
 fn grid(row: usize, columns: usize) -> Vec<Triangle> {
     let place =
-        |column: usize| DVec3::new(0.3137 * column as f64 - 0.7071, 0.2963 * row as f64 - 1.3179, -1.1);
+        |column: usize| DVec3::new(0.3137 * column as f64 - 0.7083, 0.2963 * row as f64 - 1.3179, -1.1);
     (0..columns).flat_map(|column| square(place(column), 0.1213 * DVec3::X, 0.1197 * DVec3::Y)).collect()
 }
 
