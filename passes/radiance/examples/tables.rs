@@ -108,7 +108,9 @@ impl Case {
         })
     }
 
+    /// As the thesis has it, whose oracle believes what a sample sees.
     fn refine(&self, settings: &Settings) -> Result<Refined, RadianceError> {
+        let settings = &Settings { hidden: 0.0, ..*settings };
         refine(&self.tree, settings, &Glow::of(&self.emitters), &mut |points| self.sample(points))
     }
 
