@@ -44,7 +44,7 @@ pub struct Draw {
 
 /// A material's normal map on the device.
 #[derive(Clone)]
-#[cfg_attr(not(feature = "normals"), expect(dead_code, reason = "only the room of normal maps makes it"))]
+#[cfg_attr(not(feature = "normals"), allow(dead_code, reason = "only the room of normal maps makes it"))]
 pub struct Mapped {
     /// Array layers of what is kept of its coarser levels.
     pub layers: u32,
