@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use airglow::normals::rivals::{self, Lean};
-use airglow::normals::{NormalMap, Normals, Sample, Settings};
+use airglow::normals::{self, Brdf, Method, NormalMap, Normals, Sample, Settings};
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Binding, Execution, ImageView, Imports, Requirements, SamplerDesc, ViewDesc};
 use airglow_graph::{Access, Graph, LeftOut};
@@ -14,6 +14,9 @@ use super::filter::Filter;
 use super::scene::{DeviceScene, Mapped};
 use super::{scene, shaders, upload};
 use crate::failure::{Failure, Outcome};
+
+/// Relative error that the lobes of a material may have.
+const TOLERANCE: f64 = 0.05;
 
 /// The maps of a scene, one for each material that has one.
 pub struct MappedMaterials {
@@ -75,7 +78,7 @@ impl MappedMaterials {
         let map = NormalMap::from_vectors(image.width as usize, image.height as usize, &vectors)
             .map_err(|error| Failure::input(format!("{}: {error}", image.name)))?;
         let coarse = match self.filter {
-            Filter::Lobes => match self.lobes(device, &map)? {
+            Filter::Lobes => match self.lobes(device, &map, material)? {
                 Some(lobes) => lobes,
                 None => kept(device, &map, mean)?,
             },
@@ -106,9 +109,25 @@ impl MappedMaterials {
     }
 
     /// The room's own texture, built in a frame before all others.
-    fn lobes(&mut self, device: &Device<'_>, map: &NormalMap) -> Outcome<Option<ImageView>> {
+    fn lobes(
+        &mut self,
+        device: &Device<'_>,
+        map: &NormalMap,
+        material: &Material,
+    ) -> Outcome<Option<ImageView>> {
         let context = device.context();
-        let normals = Normals::new(context, Settings::default()).map_err(Failure::work)?;
+        let mut settings = Settings::default();
+        let brdf = match material.class {
+            MaterialClass::Lambert => Brdf::Lambert,
+            _ => Brdf::Ggx { alpha: f64::from(material.roughness * material.roughness).clamp(1e-3, 1.0) },
+        };
+        let choice = normals::choose(map, brdf, TOLERANCE).map_err(Failure::work)?;
+        // This draw reads lobes alone: where harmonics would do, it keeps the default.
+        if let Method::Lobes(lobes) = choice.method {
+            settings.fit.lobes = lobes;
+            self.left_out.extend(choice.left_out);
+        }
+        let normals = Normals::new(context, settings).map_err(Failure::work)?;
         let mut build = normals.build(context, map).map_err(Failure::input)?;
         let (mut graph, mut imports) = (Graph::new(), Imports::new());
         build.add(&mut graph, &mut imports, usize::MAX);
@@ -172,8 +191,7 @@ fn kept(device: &Device<'_>, map: &NormalMap, keep: fn(&[Sample]) -> Vec<[f32; 4
         let [width, height] = map.size(level);
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let texels = places.map(|(x, y)| Ok(keep(&map.footprint(level, x, y)?)));
-        let texels: Vec<_> =
-            texels.collect::<Result<_, airglow::normals::NormalsError>>().map_err(Failure::work)?;
+        let texels: Vec<_> = texels.collect::<Result<_, normals::NormalsError>>().map_err(Failure::work)?;
         let layers = texels.first().map_or(0, Vec::len);
         let texels: Vec<[f32; 4]> =
             (0..layers).flat_map(|layer| texels.iter().map(move |texel| texel[layer])).collect();
