@@ -3,11 +3,12 @@
 use airglow_math::sh::rotation::Rotation;
 use airglow_math::statistics::relative_l2;
 use airglow_radiance::gpu::bench::Bench;
-use airglow_radiance::gpu::{LightShape, TexelSettings, Texels};
+use airglow_radiance::gpu::{LightShape, TexelSettings, Texels, refinement, vertices};
 use airglow_radiance::{
-    Glow, Lights, Oracle, Part, PassSettings, Radiance, Receiver, Reconstruction, Refined, Settings,
-    Weights, refine,
+    Glow, Lights, Oracle, Part, PassSettings, Radiance, Receiver, Reconstruction, Refined, Settings, Weights,
+    refine,
 };
+use airglow_tests::reflect::Module;
 use glam::{DMat3, DVec3};
 
 use crate::receivers::Mesh;
@@ -175,4 +176,21 @@ fn parts_get_light_in_their_own_space() {
             assert!(error < 1e-5, "vertex {vertex}: {error:e}, {:?} is not {:?}", &found[..3], &turned[..3]);
         }
     });
+}
+
+#[test]
+fn modules_declare_what_is_stated() {
+    let read = |bytes| Module::read(bytes).unwrap();
+    read(refinement::REFINE).assert_bindings(&refinement::REFINE_BINDINGS);
+    for order in 3..=6 {
+        read(vertices::turn_module(order).unwrap()).assert_bindings(&vertices::TURN_BINDINGS);
+        for gradients in [false, true] {
+            let shape = LightShape { order, gradients };
+            let module = read(vertices::module(shape).unwrap());
+            module.assert_bindings(&vertices::bindings(shape));
+            assert_eq!(module.push_constants.as_ref().unwrap().size, vertices::CONSTANTS);
+            assert!(module.shared_bytes <= 16 << 10, "{} bytes shared", module.shared_bytes);
+        }
+    }
+    assert!(vertices::module(LightShape { order: 2, gradients: true }).is_none());
 }
