@@ -8,9 +8,9 @@ pub const MAX_LIGHTS: usize = 64;
 
 /// One record for each kind of content that no pass of this frame uses.
 pub fn unread(scene: &Scene) -> Vec<LeftOut> {
-    #[cfg(feature = "normals")]
+    #[cfg(all(feature = "normals", feature = "relight"))]
     let drawn = |material: &Material| super::mapped::is_drawn(scene, material);
-    #[cfg(not(feature = "normals"))]
+    #[cfg(not(all(feature = "normals", feature = "relight")))]
     let drawn = |_: &Material| false;
     let unread = |material: &&Material| material.normal_texture.is_some() && !drawn(material);
     let normal_textures = scene.materials.iter().filter(unread).count();
