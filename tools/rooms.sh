@@ -72,6 +72,7 @@ from_template() {
     cargo test --locked --quiet --package airglow-sample "${many[@]}" --lib --test plan --test gpu
 }
 
+[ $# = 0 ] || rooms=("$@")
 for room in "${rooms[@]}"; do
     step "without $room" without "$room"
 done
