@@ -13,6 +13,8 @@ for component in fmt clippy; do
     cargo "$component" --version > /dev/null 2>&1 || fail "cargo $component is missing; rustup component add rustfmt clippy"
 done
 use_lavapipe
+# On a machine that builds once, what is kept for the next build, and the lines of a backtrace, only cost time.
+[ -z "${CI:-}" ] || export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=false
 
 summary=()
 failures=0
