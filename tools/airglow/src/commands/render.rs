@@ -12,12 +12,12 @@ use crate::cli::Global;
 use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
-#[cfg(feature = "fog")]
-use crate::host::{airs, complete::Road};
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
+#[cfg(feature = "fog")]
+use crate::host::{airs, complete::Road};
 use crate::host::{device, truth};
 use crate::measure::health::{self, Count};
 #[cfg(feature = "fog")]

@@ -68,7 +68,11 @@ pub fn scene_fragment_in_fog() -> Vec<u32> {
 /// The fragment stage of the forward draw of the complete model, evaluated there or at the vertices.
 #[cfg(feature = "fog")]
 pub fn complete_fragment(vertices: bool) -> Vec<u32> {
-    if vertices { module!("fog/", "complete.FOG_COMPLETE2") } else { module!("fog/", "complete.FOG_COMPLETE1") }
+    if vertices {
+        module!("fog/", "complete.FOG_COMPLETE2")
+    } else {
+        module!("fog/", "complete.FOG_COMPLETE1")
+    }
 }
 
 /// The vertex stage that evaluates it.

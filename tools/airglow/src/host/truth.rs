@@ -132,7 +132,8 @@ mod tests {
             Mesh { name: "wall", positions: &wall, normals: &[[1.0, 0.0, 0.0]; 3], indices: &[0, 1, 2] };
         let rotation = Quat::from_rotation_y(1.0);
         let pixels = vec![[3.0, 1.0, 0.0]; 32];
-        let environment = Environment { file: "sky".into(), width: 8, height: 4, pixels, rotation, distance: None };
+        let environment =
+            Environment { file: "sky".into(), width: 8, height: 4, pixels, rotation, distance: None };
         let samples = EnvironmentSamples::new(&environment).unwrap();
         for (blockers, expected) in
             [(vec![mesh.occluder()], 3.0), (vec![mesh.occluder(), wall.occluder()], 1.5)]
