@@ -22,11 +22,11 @@ const LEAST: f64 = 1e-7;
 /// The tables of one order.
 #[derive(Clone, Debug)]
 pub struct Tables {
-    /// Of the logarithm: [`ENTRIES`] vec4, one a height from 0 to 1, or two from order 5 on, one component a band.
+    /// Of the logarithm: `ENTRIES` vec4, one a height from 0 to 1, or two from order 5 on, one component a band.
     pub logarithm: Vec<[f32; 4]>,
     /// Of the visibility less 1, in the same form.
     pub visibility: Vec<[f32; 4]>,
-    /// a and b at [`LINEAR_STEPS`] + 1 norms from 0 to [`Self::linear_end`].
+    /// a and b at `LINEAR_STEPS` + 1 norms from 0 to [`Self::linear_end`].
     pub linear: Vec<[f32; 2]>,
     /// The largest norm of [`Self::linear`].
     pub linear_end: f32,
