@@ -25,7 +25,7 @@ fn assert_same(what: &str, actual: &Incident, expected: &Incident, tolerance: f6
 
 /// A triangle integrated over its area by a product rule: dω = cos dA / d².
 fn by_quadrature(point: DVec3, triangle: &Triangle) -> Incident {
-    let rule = gauss_legendre(64).unwrap();
+    let rule = gauss_legendre(128).unwrap();
     let [a, b, c] = triangle.corners.map(|corner| corner - point);
     let area = (b - a).cross(c - a);
     let mut incident = Incident::dark(ORDER).unwrap();
