@@ -84,7 +84,7 @@ fn main() -> Result<(), FogError> {
     let settings = Settings::default();
     let fixture = fixture_with(&Fog::requirements(&settings));
     let fog = Fog::new(fixture.context(), settings)?;
-    let images = images::Images::of(&fixture, [SIDE; 2], 0.1, depth);
+    let images = images::Images::of(&fixture, [SIDE; 2], |_| 0.1, depth);
     let lamps = |of: fn(u32) -> Light, count: u32| view((0..count).map(of).collect());
     let views = [
         ("none", lamps(street, 0)),

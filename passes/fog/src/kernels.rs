@@ -79,6 +79,7 @@ static SURFACE_ROWS: [&[u8]; 2] = [
 ];
 static BACKGROUND_PARTS: &[u8] = include_bytes!("../../../shaders/spirv/fog/background_parts.spv").as_slice();
 static BACKGROUND: &[u8] = include_bytes!("../../../shaders/spirv/fog/background.spv").as_slice();
+static HEALTH: &[u8] = include_bytes!("../../../shaders/spirv/fog/health.spv").as_slice();
 static COMPLETE_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/complete_rows.spv").as_slice();
 static SPREAD_ROWS: &[u8] = include_bytes!("../../../shaders/spirv/fog/spread_rows.spv").as_slice();
 
@@ -101,7 +102,12 @@ pub(crate) fn airlight(settings: &Settings, kind: Kind) -> Vec<u32> {
     })
 }
 
-/// Its vertex stage.
+/// The kernel that counts a host's bad pixels.
+pub(crate) fn health() -> Vec<u32> {
+    words(HEALTH)
+}
+
+/// The vertex stage of the airlight pass.
 pub(crate) fn tile(kind: Kind) -> Vec<u32> {
     words(TILE[usize::from(kind != Kind::Dark)])
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
+mod bad_pixels;
 mod images;
 mod tiles;
 

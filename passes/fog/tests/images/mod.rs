@@ -23,8 +23,8 @@ pub fn view_distance(pixel: usize) -> Option<f64> {
     (pixel >= PIXELS / 3).then(|| depth.view_distance(f64::from(rounded)))
 }
 
-/// A surface of one radiance, its depth and the picture.
-pub struct Images([Image; 3]);
+/// A surface, its depth and the picture.
+pub struct Images(pub [Image; 3]);
 
 impl Images {
     /// All surfaces send out `radiance` in each channel.
@@ -32,11 +32,16 @@ impl Images {
         let world = World::default().depth;
         let depth =
             |pixel| view_distance(pixel).map_or(world.farthest(), |metres| world.value(metres)) as f32;
-        Self::of(fixture, SIZE, radiance, depth)
+        Self::of(fixture, SIZE, |_| radiance, depth)
     }
 
-    /// The same in a picture of any size, by the depth of each pixel.
-    pub fn of(fixture: &Fixture, size: [u32; 2], radiance: f32, depth: impl Fn(usize) -> f32) -> Self {
+    /// The same in a picture of any size, by radiance and depth of each pixel.
+    pub fn of(
+        fixture: &Fixture,
+        size: [u32; 2],
+        radiance: impl Fn(usize) -> f32,
+        depth: impl Fn(usize) -> f32,
+    ) -> Self {
         let pixels = (size[0] * size[1]) as usize;
         let context = fixture.context();
         let make = |name, format, usage| {
@@ -57,8 +62,9 @@ impl Images {
             buffer.write(0, bytes).unwrap();
             buffer
         };
-        let surface = vec![radiance; 4 * pixels];
-        let contents = [staging(&surface), staging(&(0..pixels).map(depth).collect::<Vec<f32>>())];
+        let surface: Vec<f32> = (0..pixels).flat_map(|pixel| [radiance(pixel); 4]).collect();
+        let depth: Vec<f32> = (0..pixels).map(depth).collect();
+        let contents = [staging(&surface), staging(&depth)];
         fixture
             .device()
             .run(context, |recorder| {

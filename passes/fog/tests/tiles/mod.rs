@@ -86,7 +86,7 @@ fn what_tiles_leave_out_is_below_the_bound() {
     };
     let bench = Bench { context: fixture.context(), run: &run };
     let farthest = World::default().depth.farthest() as f32;
-    let images = Images::of(&fixture, SIZE, 0.0, |_| farthest);
+    let images = Images::of(&fixture, SIZE, |_| 0.0, |_| farthest);
     for orthographic in [false, true] {
         let view = view(orthographic);
         let pixels: Vec<usize> = (0..(SIZE[0] * SIZE[1]) as usize).step_by(41).collect();
