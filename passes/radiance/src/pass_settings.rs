@@ -10,9 +10,9 @@ pub struct PassSettings {
     pub order: usize,
     /// Whether samples hold gradients and are continued by them. Default on: the largest gain there is.
     pub gradients: bool,
-    /// Texels along a side of a cube face, a multiple of 8, 8 to 128. Default 16.
+    /// Texels along a side of a cube face, a multiple of 8, 8 to 128. Default 8: rays decide the error, texels the time.
     pub face: u32,
-    /// Rays along a side of a texel: 1, 2 or 4. Default 2: a lamp of a few degrees is not seen by 16 texels alone.
+    /// Rays along a side of a texel: 1, 2 or 4. Default 4: a lamp of a few degrees is not seen by texels alone.
     pub rays: u32,
     /// How far the tree is refined. Its limit says how much memory samples get.
     pub refinement: Settings,
@@ -20,7 +20,7 @@ pub struct PassSettings {
 
 impl Default for PassSettings {
     fn default() -> Self {
-        Self { order: 4, gradients: true, face: 16, rays: 2, refinement: Settings::default() }
+        Self { order: 4, gradients: true, face: 8, rays: 4, refinement: Settings::default() }
     }
 }
 
