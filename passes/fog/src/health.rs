@@ -61,30 +61,37 @@ impl InputHealth {
         &mut self.counters
     }
 
-    /// Adds the pass `fog health` to a graph, which counts in the images of a frame of `size` pixels.
+    /// Adds the pass `fog health` to a graph, which counts in surface and depth of each view, of that many pixels.
     pub fn add(
         &self,
         graph: &mut Graph<Record>,
         imports: &mut Imports,
         size: [u32; 2],
-        surface: Handle<Image>,
-        depth: Handle<Image>,
+        views: Vec<[Handle<Image>; 2]>,
     ) {
         let access = Access::ComputeStorageReadWrite;
         let buffer = self.counters.buffer().clone();
         let counters = graph.import_buffer("fog health", *buffer.desc(), access, access);
         imports.buffer(&counters, &buffer);
         let mut pass = graph.pass("fog health", PassKind::Compute);
-        pass.read(&surface, Access::ComputeSampled).read(&depth, Access::ComputeSampledDepth);
+        for [surface, depth] in &views {
+            pass.read(surface, Access::ComputeSampled).read(depth, Access::ComputeSampledDepth);
+        }
         pass.write(counters, access);
         let pipeline = self.pipeline.clone();
         pass.record(Box::new(move |recorder, resources| {
-            let bound = [
-                Binding::sampled(0, resources.view(&surface)?),
-                Binding::sampled(1, resources.view(&depth)?),
-                Binding::storage(2, &buffer),
-            ];
-            count(recorder, &pipeline, &bound, size)
+            for (index, [surface, depth]) in views.iter().enumerate() {
+                if index > 0 {
+                    recorder.memory_barrier(access, access)?;
+                }
+                let bound = [
+                    Binding::sampled(0, resources.view(surface)?),
+                    Binding::sampled(1, resources.view(depth)?),
+                    Binding::storage(2, &buffer),
+                ];
+                count(recorder, &pipeline, &bound, size)?;
+            }
+            Ok(())
         }));
     }
 

@@ -79,7 +79,7 @@ fn counts(fixture: &Fixture, images: &Images, health: &mut InputHealth) -> Vec<u
         handle
     };
     let [surface, depth] = [0, 1].map(|given| import(&images.0[given], accesses[given]));
-    health.add(&mut graph, &mut imports, SIZE, surface, depth);
+    health.add(&mut graph, &mut imports, SIZE, vec![[surface, depth]]);
     let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
     let mut execution = Execution::prepare(context, plan).unwrap();
     device.run(context, |recorder| health.counters().clear(recorder)).unwrap();

@@ -113,7 +113,7 @@ pub struct Arguments {
     #[arg(long)]
     pipeline_statistics: bool,
     /// Have the passes count what is wrong with their inputs, too: texels of the environment that are not finite, and
-    /// negative ones.
+    /// negative ones; pixels that fog cannot use.
     #[arg(long)]
     health: bool,
     /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
@@ -192,7 +192,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let mut settings = settings(arguments);
         let size = settings.picture_size();
         let mut renderer = Renderer::with_filter(device, &scene, &source, size, arguments.maps)?;
-        renderer.health().map_or(Ok(()), |health| health::clear(device, health))?;
+        #[cfg(feature = "fog")]
+        if arguments.health {
+            renderer.count_health()?;
+        }
+        renderer.health().into_iter().try_for_each(|health| health::clear(device, health))?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let statistics = arguments.pipeline_statistics;
         let mut picture = arguments.picture(&mut renderer, &mut settings)?;
@@ -213,8 +217,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             write_trace(path, device, &picture)?;
         }
         let mut stat = stat(device, &settings, &picture, cost);
-        if let Some(health) = renderer.health() {
-            stat.health = health::collect(device, health)?;
+        for health in renderer.health() {
+            stat.health.extend(health::collect(device, health)?);
         }
         Ok((picture, stat))
     })?;

@@ -1,9 +1,9 @@
 //! The scene's medium as the fog pass takes it.
 
-use airglow::fog::{self, Fog, Lobe, LobeTables};
+use airglow::fog::{self, Fog, InputHealth, Lobe, LobeTables};
 use airglow::math::World;
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Record, Requirements};
+use airglow_gpu::{Imports, Record, Requirements};
 use airglow_graph::{Graph, LeftOut};
 use airglow_scene::{Camera, Light, LightKind, Material, MaterialClass, Projection, Scene};
 use glam::{DQuat, Vec3};
@@ -29,6 +29,8 @@ pub struct SceneFog {
     pub(super) lobes: LobeTables,
     /// The environment through the medium.
     pub(super) sky: Option<FoggedSky>,
+    /// Counters of bad pixels, where they are asked for.
+    pub(super) health: Option<InputHealth>,
     medium: fog::Medium,
     lights: Vec<fog::Light>,
 }
@@ -36,7 +38,8 @@ pub struct SceneFog {
 /// What the device must offer for a scene.
 pub fn requirements(scene: &Scene) -> Requirements {
     match scene.medium {
-        Some(_) => Fog::requirements(&settings(scene, fog::Settings::default().format)),
+        Some(_) => Fog::requirements(&settings(scene, fog::Settings::default().format))
+            .and(&InputHealth::requirements()),
         None => Requirements::engine(),
     }
 }
@@ -70,7 +73,7 @@ impl SceneFog {
         let pass = Fog::new(context, settings(scene, hdr)).map_err(Failure::work)?;
         let sky =
             uploaded.map(|uploaded| FoggedSky::new(device, scene, uploaded, &medium)).transpose()?.flatten();
-        Ok(Some(Self { pass, lobes, sky, medium, lights }))
+        Ok(Some(Self { pass, lobes, sky, health: None, medium, lights }))
     }
 
     /// The fragment stage of the forward draw, where surfaces reflect light out of the medium.
@@ -148,6 +151,7 @@ pub fn add(
     renderer: &Renderer<'_>,
     settings: &Settings,
     graph: &mut Graph<Record>,
+    imports: &mut Imports,
     drawn: &mut [Drawn],
 ) -> Outcome<Vec<fog::Control>> {
     let fog_views = renderer.fog_views(settings, settings.turn)?;
@@ -180,6 +184,9 @@ pub fn add(
             return Ok(Vec::new());
         }
     };
+    if let Some(health) = &present.health {
+        health.add(graph, imports, size, drawn.iter().map(|drawn| [drawn.hdr, drawn.depth]).collect());
+    }
     let mut controls = Vec::new();
     for (drawn, view) in drawn.iter_mut().zip(fog_views) {
         let frame = fog::Frame { size, surface: drawn.hdr, depth: drawn.depth, target: None, view };

@@ -158,7 +158,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
     // The medium before it dims them and glows.
     #[cfg(feature = "fog")]
-    fog.extend(fog::add(renderer, settings, &mut graph, &mut drawn)?);
+    fog.extend(fog::add(renderer, settings, &mut graph, &mut imports, &mut drawn)?);
 
     // Exposure, tone map and encoding make the picture, the views side by side.
     let mut picture = |name, buffer: &airglow_gpu::Buffer| {

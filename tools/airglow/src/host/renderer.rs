@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+#[cfg(feature = "fog")]
+use airglow::fog::InputHealth;
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
@@ -276,12 +278,26 @@ impl<'d> Renderer<'d> {
         Ok(ours().next().is_some().then(|| ours().map(|pass| pass.median).sum()))
     }
 
-    /// The counters of the relight pass, where it was asked to count.
-    pub fn health(&mut self) -> Option<&mut Health> {
-        match &mut self.lighting {
+    /// Has the fog pass count bad pixels of the pictures it gets, where there is the pass.
+    #[cfg(feature = "fog")]
+    pub fn count_health(&mut self) -> Outcome {
+        if let Some(fog) = &mut self.fog {
+            fog.health = Some(InputHealth::new(self.device.context()).map_err(Failure::work)?);
+        }
+        Ok(())
+    }
+
+    /// The counters of the passes that were asked to count.
+    pub fn health(&mut self) -> Vec<&mut Health> {
+        let relight = match &mut self.lighting {
             Lighting::Relight(lit) => lit.relight.health(),
             _ => None,
-        }
+        };
+        let counters = relight.into_iter();
+        #[cfg(feature = "fog")]
+        let counters =
+            counters.chain(self.fog.iter_mut().filter_map(|fog| Some(fog.health.as_mut()?.counters())));
+        counters.collect()
     }
 
     /// What a plan says of the time that leaving the pass out saves, seconds.
