@@ -6,7 +6,6 @@ use airglow_scene::image_io::{write_exr, write_png_bytes};
 use airglow_scene::{Scene, tone};
 use clap::{Args, ValueEnum};
 use glam::DQuat;
-use serde::Serialize;
 
 use crate::cli::Global;
 use crate::commands::scene::SceneOptions;
@@ -19,14 +18,11 @@ use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
 #[cfg(feature = "fog")]
 use crate::host::{airs, complete::Road};
 use crate::host::{device, truth};
-use crate::measure::health::{self, Count};
-#[cfg(feature = "fog")]
-use crate::measure::lights::LightStat;
-use crate::measure::pass::{PassStat, counted};
+use crate::measure::health;
 use crate::measure::profiler::ProfilerCost;
+use crate::measure::stat::Stat;
 use crate::measure::trace::{self, Trace};
 use crate::output::Output;
-use crate::report::model::Machine;
 
 /// Draw a scene and write the picture: scene-linear EXR, or exposed and tone-mapped PNG.
 ///
@@ -140,41 +136,6 @@ pub enum CompleteName {
     Vertices,
 }
 
-/// What `--stat` writes.
-#[derive(Serialize)]
-struct Stat {
-    machine: Machine,
-    width: u32,
-    height: u32,
-    frames: usize,
-    exposure: f32,
-    passes: Vec<PassStat>,
-    /// From the first pass's start to the last one's end, milliseconds.
-    span_ms: Option<f64>,
-    /// All passes added up, milliseconds.
-    sum_ms: Option<f64>,
-    /// Median of the sum over the span of its frame.
-    coverage: Option<f64>,
-    /// Median CPU time of recording a frame, milliseconds.
-    record_ms: f64,
-    /// What measuring adds to a frame; with --stat alone.
-    profiler: Option<ProfilerCost>,
-    /// Which lights the fog pass evaluates in each view.
-    #[cfg(feature = "fog")]
-    lights: Vec<LightStat>,
-    /// What the passes counted; with --health, where they have anything to count.
-    health: Vec<Count>,
-    /// Device memory by owner.
-    memory: Vec<MemoryStat>,
-}
-
-#[derive(Serialize)]
-struct MemoryStat {
-    owner: String,
-    bytes: u64,
-    objects: u64,
-}
-
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     for path in &arguments.output {
@@ -216,7 +177,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         if let Some(path) = &arguments.trace {
             write_trace(path, device, &picture)?;
         }
-        let mut stat = stat(device, &settings, &picture, cost);
+        let mut stat = Stat::new(device, &settings, &picture, cost);
         for health in renderer.health() {
             stat.health.extend(health::collect(device, health)?);
         }
@@ -230,7 +191,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let json = serde_json::to_vec_pretty(&stat).map_err(Failure::work)?;
         files::write(path, &json)?;
     }
-    output.result(&stat, text)
+    output.result(&stat, Stat::text)
 }
 
 /// The settings of the frames but for their exposure.
@@ -308,62 +269,6 @@ fn write_trace(path: &Path, device: &device::Device<'_>, picture: &Picture) -> O
         calibrations: picture.calibrations,
     };
     files::write(path, &serde_json::to_vec(&trace.json()).map_err(Failure::work)?)
-}
-
-fn stat(
-    device: &device::Device<'_>,
-    settings: &Settings,
-    picture: &Picture,
-    profiler: Option<ProfilerCost>,
-) -> Stat {
-    let mut cpu = picture.cpu_milliseconds.clone();
-    cpu.sort_by(f64::total_cmp);
-    let timing = picture.timing.as_ref();
-    Stat {
-        machine: device.machine(),
-        width: settings.picture_size()[0],
-        height: settings.picture_size()[1],
-        frames: timing.map_or(0, |timing| timing.frames),
-        exposure: settings.exposure,
-        passes: counted(&picture.passes, timing),
-        span_ms: timing.map(|timing| 1e3 * timing.span),
-        sum_ms: timing.map(|timing| 1e3 * timing.sum),
-        coverage: timing.map(|timing| timing.coverage),
-        record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
-        profiler,
-        #[cfg(feature = "fog")]
-        lights: picture.lights.clone(),
-        health: Vec::new(),
-        memory: device
-            .context()
-            .memory_report()
-            .into_iter()
-            .map(|owner| MemoryStat { owner: owner.owner, bytes: owner.bytes, objects: owner.objects })
-            .collect(),
-    }
-}
-
-fn text(stat: &Stat) -> String {
-    let mut text = format!("{} ({})\n", stat.machine.device, stat.machine.driver);
-    text.extend(stat.passes.iter().map(PassStat::line));
-    match (stat.span_ms, stat.sum_ms, stat.coverage) {
-        (Some(span), Some(sum), Some(coverage)) => {
-            text.push_str(&format!(
-                "  span {span:.3} ms, sum {sum:.3} ms, coverage {:.1} %; medians of {} frames (5th to 95th percentile)\n",
-                100.0 * coverage,
-                stat.frames
-            ));
-        }
-        _ => text.push_str(&format!("  no times: more than {WARM_UP} frames are needed\n")),
-    }
-    text.push_str(&stat.profiler.as_ref().map_or(String::new(), ProfilerCost::text));
-    #[cfg(feature = "fog")]
-    text.extend(stat.lights.iter().map(LightStat::line));
-    text.extend(stat.health.iter().map(Count::line));
-    for owner in &stat.memory {
-        text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));
-    }
-    text
 }
 
 fn check_extension(path: &Path) -> Outcome {

@@ -5,4 +5,5 @@ pub mod health;
 pub mod lights;
 pub mod pass;
 pub mod profiler;
+pub mod stat;
 pub mod trace;
