@@ -18,7 +18,7 @@ use crate::map::NormalMap;
 use crate::mixture::{MAX_LOBES, WeightedLobe};
 use crate::normals::Normals;
 use crate::settings::Settings;
-use crate::stage::{Resource, dispatch};
+use crate::stage::{Resource, Stage, Work, dispatch};
 
 /// Rows of one dispatch: at most 52 MiB, below the least storage-buffer range of any device.
 const ROWS: usize = 1 << 18;
@@ -113,8 +113,26 @@ impl Bench<'_> {
     /// # Errors
     /// As [`Normals::new`] and [`Normals::build`].
     pub fn build(&self, map: &NormalMap, settings: &Settings) -> Result<Vec<LevelLobes>, NormalsError> {
+        self.levels(map, settings, |_| true)
+    }
+
+    /// The same as they are fitted, each texel by itself, before they are put in order.
+    ///
+    /// # Errors
+    /// As [`Bench::build`].
+    pub fn fitted(&self, map: &NormalMap, settings: &Settings) -> Result<Vec<LevelLobes>, NormalsError> {
+        self.levels(map, settings, |stage| matches!(stage.work, Work::Fit { .. }))
+    }
+
+    /// The lobes of a map's levels after those steps of its build.
+    fn levels(
+        &self,
+        map: &NormalMap,
+        settings: &Settings,
+        wanted: impl Fn(&Stage) -> bool,
+    ) -> Result<Vec<LevelLobes>, NormalsError> {
         let mut build = Normals::new(self.context, *settings)?.build(self.context, map)?;
-        self.steps(&mut build)?;
+        self.steps(&mut build, wanted)?;
         let mut built = Vec::with_capacity(build.levels().len());
         for level in build.levels() {
             let Some(buffer) = build.buffer(Resource::Lobes(level.level)) else { continue };
@@ -129,7 +147,7 @@ impl Bench<'_> {
     /// As [`Bench::build`].
     pub fn texture(&self, map: &NormalMap, settings: &Settings) -> Result<Option<LobeTexture>, NormalsError> {
         let mut build = Normals::new(self.context, *settings)?.build(self.context, map)?;
-        self.steps(&mut build)?;
+        self.steps(&mut build, |_| true)?;
         Ok(build.texture().cloned())
     }
 
@@ -149,7 +167,7 @@ impl Bench<'_> {
             Ok(chain) => (normals.upload(self.context, map, &chain)?, Source::Cache),
             Err(miss) => (normals.build(self.context, map)?, Source::Built(miss)),
         };
-        self.steps(&mut build)?;
+        self.steps(&mut build, |_| true)?;
         if matches!(source, Source::Built(_)) {
             let mut copies = Vec::new();
             self.frame(&mut |recorder| {
@@ -183,10 +201,10 @@ impl Bench<'_> {
         Ok(copies.iter().map(Readback::read).collect::<Result<_, _>>()?)
     }
 
-    /// Takes the steps of a build, each in a frame of its own.
-    fn steps(&self, build: &mut Build) -> Result<(), NormalsError> {
+    /// Takes those steps of a build, each in a frame of its own.
+    fn steps(&self, build: &mut Build, wanted: impl Fn(&Stage) -> bool) -> Result<(), NormalsError> {
         let texture = build.texture().cloned();
-        for stage in build.take(usize::MAX) {
+        for stage in build.take(usize::MAX).iter().filter(|stage| wanted(stage)) {
             let copies = stage.accesses().iter().any(|(resource, _)| *resource == Resource::Texture);
             let image = texture.as_ref().filter(|_| copies).map(|texture| &texture.image);
             self.frame(&mut |recorder| {
