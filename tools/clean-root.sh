@@ -93,9 +93,9 @@ run() {
     return "$status"
 }
 
-# Without terminal colours, and the progress of downloads, packages and compilers.
+# Without terminal colours, the folder of the clone, and the progress of downloads, packages and compilers.
 essence() {
-    sed -E 's/\x1b\[[0-9;]*m//g' |
+    sed -E "s/\x1b\[[0-9;]*m//g; s#$clone/##g" |
         grep -vE '://|^ *(Get|Hit|Ign):|^ *(Updating|Downloading|Downloaded|Compiling|Checking|Documenting|Locking) ' |
         grep -vE '^(Selecting previously|Preparing to unpack|Unpacking|Setting up|Processing triggers|\(Reading database)'
 }
