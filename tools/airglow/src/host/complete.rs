@@ -4,12 +4,11 @@
 use airglow::fog;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, BufferSlice, Context, DepthState, GpuError, GraphicsPipeline,
-    GraphicsPipelineDesc, Recorder,
+    Binding, BindingDesc, BindingKind, BufferSlice, Context, GpuError, GraphicsPipeline, Recorder,
 };
 
-use super::draw::{self, DEPTH, Inputs};
-use super::shaders;
+use super::draw::{self, Inputs};
+use super::{shaders, sky};
 
 /// Where the model is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,20 +50,9 @@ impl CompletePipelines {
             Road::Vertices => (Inputs::LitVertices, shaders::complete_fragment(true)),
         };
         let surface = |relight| draw::scene_pipeline(context, hdr, relight, inputs, &fragment, &bindings);
-        let sky = context.create_graphics_pipeline(&GraphicsPipelineDesc {
-            name: "airlight behind the surfaces",
-            vertex: &shaders::sky_vertex(),
-            fragment: Some(&shaders::complete_sky()),
-            bindings: &[BindingDesc::new(0, BindingKind::UniformBuffer), VIEW],
-            push_constant_size: 0,
-            vertex_buffers: &[],
-            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-            cull: vk::CullModeFlags::NONE,
-            front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-            depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: false }),
-            colors: &[hdr],
-            blend: Blend::None,
-        })?;
+        let bindings = [BindingDesc::new(0, BindingKind::UniformBuffer), VIEW];
+        let name = "airlight behind the surfaces";
+        let sky = sky::behind(context, hdr, name, &shaders::complete_sky(), &bindings, 0)?;
         Ok(Self { lit: surface(true)?, ambient: surface(false)?, sky })
     }
 

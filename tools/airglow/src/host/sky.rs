@@ -84,12 +84,27 @@ impl SkyPipelines {
 }
 
 fn pipeline(context: &Context, hdr: vk::Format, glow: bool) -> Result<GraphicsPipeline, GpuError> {
+    let name = if glow { "sky in a medium" } else { "sky" };
+    let bindings = &BINDINGS[..if glow { 4 } else { 3 }];
+    let push_constant_size = if glow { 16 } else { 0 };
+    behind(context, hdr, name, &shaders::sky_fragment(glow), bindings, push_constant_size)
+}
+
+/// A pipeline of what is behind all surfaces.
+pub(super) fn behind(
+    context: &Context,
+    hdr: vk::Format,
+    name: &str,
+    fragment: &[u32],
+    bindings: &[BindingDesc],
+    push_constant_size: u32,
+) -> Result<GraphicsPipeline, GpuError> {
     context.create_graphics_pipeline(&GraphicsPipelineDesc {
-        name: if glow { "sky in a medium" } else { "sky" },
+        name,
         vertex: &shaders::sky_vertex(),
-        fragment: Some(&shaders::sky_fragment(glow)),
-        bindings: &BINDINGS[..if glow { 4 } else { 3 }],
-        push_constant_size: if glow { 16 } else { 0 },
+        fragment: Some(fragment),
+        bindings,
+        push_constant_size,
         vertex_buffers: &[],
         topology: vk::PrimitiveTopology::TRIANGLE_LIST,
         cull: vk::CullModeFlags::NONE,

@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::plot::{COLOURS, range, short, ticks};
+use super::plot::{COLOURS, axes, range};
 use crate::failure::{Failure, Outcome};
 
 const SIZE: (u32, u32) = (720, 400);
@@ -32,24 +32,9 @@ fn draw(
     [x_label, y_label]: [&str; 2],
     series: &[Series],
 ) -> Result<(), Box<dyn std::error::Error>> {
-    area.fill(&WHITE)?;
     let all = || series.iter().flat_map(|series| &series.points);
     let (x, y) = (range(all().map(|point| point.0)), range(all().map(|point| point.1)));
-    let mut chart =
-        ChartBuilder::on(area).margin(12).x_label_area_size(42).y_label_area_size(70).build_cartesian_2d(
-            (x.0..x.1).log_scale().with_key_points(ticks(x)),
-            (y.0..y.1).log_scale().with_key_points(ticks(y)),
-        )?;
-    chart
-        .configure_mesh()
-        .x_desc(x_label)
-        .y_desc(y_label)
-        .label_style(("sans-serif", 13))
-        .x_label_formatter(&|value| short(*value))
-        .y_label_formatter(&|value| short(*value))
-        .light_line_style(WHITE)
-        .bold_line_style(RGBColor(215, 215, 215))
-        .draw()?;
+    let mut chart = axes(area, (x_label, x), (y_label, y))?;
     for (index, line) in series.iter().enumerate() {
         let (colour, width) = match index {
             0 => (RGBColor(190, 190, 190), 7),

@@ -2,6 +2,7 @@
 //! logarithmic; the Pareto front joined by a line, the chosen point ringed.
 
 use plotters::coord::Shift;
+use plotters::coord::combinators::WithKeyPoints;
 use plotters::prelude::*;
 
 use super::labels::Labels;
@@ -108,18 +109,21 @@ pub(super) fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     all.filter(|tick| (low..=high).contains(tick)).collect()
 }
 
-fn draw(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-    [x_label, y_label]: [&str; 2],
-    series: &[(String, Vec<Dot>)],
-    costs: (f64, f64),
-    errors: (f64, f64),
-) -> Result<(), Box<dyn std::error::Error>> {
+/// A chart with two logarithmic axes.
+type Chart<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<WithKeyPoints<LogCoord<f64>>, WithKeyPoints<LogCoord<f64>>>>;
+
+/// Two logarithmic axes on a white ground, each with its label and range.
+pub(super) fn axes<'a, 'b>(
+    area: &'a DrawingArea<SVGBackend<'b>, Shift>,
+    (x_label, x): (&str, (f64, f64)),
+    (y_label, y): (&str, (f64, f64)),
+) -> Result<Chart<'a, 'b>, Box<dyn std::error::Error>> {
     area.fill(&WHITE)?;
     let mut chart =
         ChartBuilder::on(area).margin(12).x_label_area_size(42).y_label_area_size(70).build_cartesian_2d(
-            (costs.0..costs.1).log_scale().with_key_points(ticks(costs)),
-            (errors.0..errors.1).log_scale().with_key_points(ticks(errors)),
+            (x.0..x.1).log_scale().with_key_points(ticks(x)),
+            (y.0..y.1).log_scale().with_key_points(ticks(y)),
         )?;
     chart
         .configure_mesh()
@@ -131,6 +135,17 @@ fn draw(
         .light_line_style(WHITE)
         .bold_line_style(RGBColor(215, 215, 215))
         .draw()?;
+    Ok(chart)
+}
+
+fn draw(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    [x_label, y_label]: [&str; 2],
+    series: &[(String, Vec<Dot>)],
+    costs: (f64, f64),
+    errors: (f64, f64),
+) -> Result<(), Box<dyn std::error::Error>> {
+    let mut chart = axes(area, (x_label, costs), (y_label, errors))?;
     for (index, (device, dots)) in series.iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
         let pairs: Vec<(f64, f64)> = dots.iter().map(|dot| (dot.cost, dot.error)).collect();
