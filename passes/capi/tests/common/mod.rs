@@ -28,8 +28,8 @@ pub fn compiler(program: &str, standard: &str) -> Command {
     command
 }
 
-/// Builds the libraries of a package as a host's build does, without the features that tests of the workspace switch
-/// on; the folder they are in.
+/// Builds the libraries of a package, with dependencies as the whole workspace has them, which are then not built once
+/// more with fewer features; the folder they are in.
 pub fn build(package: &str) -> PathBuf {
     let program = std::env::current_exe().unwrap();
     let folder = program.ancestors().nth(2).unwrap().to_owned();
@@ -37,7 +37,8 @@ pub fn build(package: &str) -> PathBuf {
     let profile = if profile == "debug" { "dev" } else { profile };
     let target = folder.parent().unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--quiet", "--package", package, "--profile", profile, "--target-dir"]);
+    cargo.args(["build", "--locked", "--quiet", "--lib", "--profile", profile, "--package", package]);
+    cargo.args(["--package", "airglow-cli", "--package", "xtask", "--target-dir"]);
     run(cargo.arg(target).current_dir(ROOM), "cargo builds the library");
     folder
 }
