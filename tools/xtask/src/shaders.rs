@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::compile;
 use crate::error::Error;
@@ -64,8 +65,8 @@ pub fn modules(glsl: &Path, room: Option<&str>) -> Result<Vec<Module>, Error> {
 fn make(glsl: &Path, modules: &[Module]) -> Result<Files, Error> {
     let mut files = Files::new();
     let mut failures = Vec::new();
-    for module in modules {
-        match compile::module(glsl, module) {
+    for (module, compiled) in modules.iter().zip(compile_all(glsl, modules)) {
+        match compiled {
             Ok(words) => {
                 files.insert(
                     module.output.clone(),
@@ -84,6 +85,31 @@ fn make(glsl: &Path, modules: &[Module]) -> Result<Files, Error> {
     } else {
         Err(Error::Compile { module: names.join(", "), log: logs.join("\n") })
     }
+}
+
+/// What each module compiles to, in their order, on as many threads as the machine runs at once.
+fn compile_all(glsl: &Path, modules: &[Module]) -> Vec<Result<Vec<u32>, Error>> {
+    let next = AtomicUsize::new(0);
+    let compile_some = || {
+        let taken = std::iter::from_fn(|| {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            Some((index, compile::module(glsl, modules.get(index)?)))
+        });
+        taken.collect::<Vec<_>>()
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut compiled: Vec<_> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(compile_some)).collect();
+        let mut all = compile_some();
+        all.extend(
+            others
+                .into_iter()
+                .flat_map(|other| other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))),
+        );
+        all
+    });
+    compiled.sort_by_key(|(index, _)| *index);
+    compiled.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Every `.spv` file below `root`, or below one room's folder.
