@@ -8,14 +8,20 @@ use std::path::{Path, PathBuf};
 
 /// The file `name` of the data folder, such as `mesh/armadillo.ply`; `None`, and a line that says so, if it is not here.
 pub fn find(name: &str) -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = env::var_os("AIRGLOW_DATA").map_or(beside, PathBuf::from);
+    let folder = folder();
     let path = folder.join(name);
     if path.is_file() {
         return Some(path);
     }
     println!("not run: {name} is not in {}; set AIRGLOW_DATA to a folder that has it", folder.display());
     None
+}
+
+/// The data folder, whether it is there or not.
+#[must_use]
+pub fn folder() -> PathBuf {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    env::var_os("AIRGLOW_DATA").map_or(beside, PathBuf::from)
 }
 
 #[cfg(test)]

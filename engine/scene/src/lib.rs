@@ -64,7 +64,16 @@ pub use warning::Warning;
 pub fn load(file: &Path) -> Result<Scene, SceneError> {
     let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let scene = match extension.to_ascii_lowercase().as_str() {
-        "toml" => scene_file::load(file)?,
+        "toml" => scene_file::load(file, data)?,
+    load_with_data(file, None)
+}
+
+/// The same, with the folder in which glTF files lie that a scene file names `data:…`: large ones that are not shipped
+/// with it.
+///
+/// # Errors
+/// As [`load`], and where a scene file names such a file and there is no folder.
+pub fn load_with_data(file: &Path, data: Option<&Path>) -> Result<Scene, SceneError> {
         "glb" | "gltf" => gltf_file::load(file)?,
         other => {
             let feature = format!("the file name extension {other:?}");

@@ -61,6 +61,8 @@ pub struct Emitter {
     pub shape: EmitterShape,
     /// Radiance of its surface, W/sr/m2, not negative.
     pub radiance: [f32; 3],
+    /// Where its centre is at the end of its way, if it moves: metres, world space.
+    pub to: Option<[f32; 3]>,
 }
 
 /// Shape of an [`Emitter`].

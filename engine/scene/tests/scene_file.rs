@@ -169,3 +169,21 @@ fn a_scale_beyond_f32_is_refused() {
     let error = load_text(&folder(), text).unwrap_err();
     assert!(matches!(error, SceneError::Radiance { count: 1, x: 3, y: 0, .. }), "{error}");
 }
+
+#[test]
+fn files_of_the_data_folder_are_found_there_and_subdivided() {
+    let (folder, data) = (tempfile::tempdir().unwrap(), folder());
+    let text =
+        "[[gltf]]\nfile = \"data:model.glb\"\n[[instance]]\nfile = \"data:model.glb\"\nsubdivide = 1\n";
+    let file = put(&folder, "scene.toml", text.as_bytes());
+    let found = airglow_scene::load_with_data(&file, Some(data.path()));
+    // A skin cannot be subdivided.
+    assert!(matches!(found, Err(SceneError::Invalid { .. })), "{found:?}");
+    let plain = text.replace("subdivide = 1", "");
+    let file = put(&folder, "plain.toml", plain.as_bytes());
+    assert!(!airglow_scene::load_with_data(&file, Some(data.path())).unwrap().meshes.is_empty());
+    let refused = load(&file).unwrap_err().to_string();
+    assert!(refused.contains("data:model.glb") && refused.contains("AIRGLOW_DATA"), "{refused}");
+    let error = load_text(&folder, "[[gltf]]\nfile = \"a.glb\"\nsubdivide = 7\n").unwrap_err().to_string();
+    assert!(error.contains("0 to 6"), "{error}");
+}

@@ -20,8 +20,8 @@ use crate::limits::MAX_SCENE_FILE_BYTES;
 use crate::scene::Scene;
 use crate::warning::Warning;
 
-/// Loads a scene file and what it names.
-pub(crate) fn load(file: &Path) -> Result<Scene, SceneError> {
+/// Loads a scene file and what it names; `data` is the folder of files that it names `data:…`.
+pub(crate) fn load(file: &Path, data: Option<&Path>) -> Result<Scene, SceneError> {
     let bytes = files::read(file, MAX_SCENE_FILE_BYTES)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| {
         let problem = "not UTF-8 text; save the scene file as UTF-8".to_owned();
@@ -31,11 +31,11 @@ pub(crate) fn load(file: &Path) -> Result<Scene, SceneError> {
         let start = error.span().map_or(0, |span| span.start);
         at(file, text, start, error.message().to_owned())
     })?;
-    build(file, text, parsed)
+    build(Builder::new(file, data), text, parsed)
 }
 
-fn build(file: &Path, text: &str, parsed: SceneFile) -> Result<Scene, SceneError> {
-    let mut builder = Builder::new(file);
+fn build(mut builder: Builder<'_>, text: &str, parsed: SceneFile) -> Result<Scene, SceneError> {
+    let file = builder.file;
     for entry in &parsed.gltf {
         if let Some(mesh) = &entry.mesh {
             let problem = "[[gltf]] places a whole file; use [[instance]] to place one mesh".to_owned();

@@ -8,30 +8,37 @@ use glam::{Mat4, Vec3};
 use super::schema::Placed;
 use crate::animation::{LocalTransform, Node};
 use crate::camera::Camera;
-use crate::error::{SceneError, at_most};
+use crate::error::{SceneError, at_most, invalid};
+use crate::geometry::subdivide;
 use crate::gltf_file;
 use crate::light::LightKind;
-use crate::limits::MAX_INSTANCES;
+use crate::limits::{MAX_INSTANCES, MAX_VERTICES};
 use crate::material::Texture;
 use crate::scene::{Instance, Scene};
 use crate::warning::Warning;
+
+/// What names of files begin with that lie in the folder of data.
+const DATA: &str = "data:";
 
 /// The scene so far and the files it was filled from.
 pub(super) struct Builder<'a> {
     pub(super) file: &'a Path,
     pub(super) scene: Scene,
-    sources: HashMap<PathBuf, Scene>,
+    /// Where files named `data:…` lie.
+    data: Option<&'a Path>,
+    /// By path and how often they are subdivided.
+    sources: HashMap<(PathBuf, u32), Scene>,
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(file: &'a Path) -> Self {
-        Self { file, scene: Scene::default(), sources: HashMap::new() }
+    pub(super) fn new(file: &'a Path, data: Option<&'a Path>) -> Self {
+        Self { file, scene: Scene::default(), data, sources: HashMap::new() }
     }
 
     /// Places a whole file: meshes, lights, cameras, skins and animations.
     pub(super) fn place_file(&mut self, entry: &Placed) -> Result<(), SceneError> {
-        let path = self.load(entry)?;
-        let Some(source) = self.sources.get(&path) else { return Ok(()) };
+        let key = self.load(entry)?;
+        let Some(source) = self.sources.get(&key) else { return Ok(()) };
         let source = source.clone();
         let placement = entry.transform();
         let material = self.override_material(entry);
@@ -69,8 +76,8 @@ impl<'a> Builder<'a> {
 
     /// Places the meshes of a file, or those named `entry.mesh` without their nodes' transforms. Returns how many.
     pub(super) fn place_meshes(&mut self, entry: &Placed) -> Result<usize, SceneError> {
-        let path = self.load(entry)?;
-        let Some(source) = self.sources.get(&path) else { return Ok(0) };
+        let key = self.load(entry)?;
+        let Some(source) = self.sources.get(&key) else { return Ok(0) };
         let mut instances = source.instances.clone();
         let placement = entry.transform();
         if let Some(wanted) = &entry.mesh {
@@ -113,13 +120,29 @@ impl<'a> Builder<'a> {
         self.file.parent().unwrap_or(Path::new("")).join(named)
     }
 
+    /// The path of a glTF file, which may lie in the folder of data.
+    fn resolve_model(&self, named: &Path) -> Result<PathBuf, SceneError> {
+        let Some(name) = named.to_str().and_then(|named| named.strip_prefix(DATA)) else {
+            return Ok(self.resolve(named));
+        };
+        let Some(folder) = self.data else {
+            let problem = "the file is not shipped, and no folder of data was given".to_owned();
+            let mend = "set AIRGLOW_DATA to a folder that has it, or load with one";
+            return Err(invalid(self.file, named.display().to_string(), problem, mend));
+        };
+        Ok(folder.join(name))
+    }
+
     /// Loads the file of `entry` unless it is there, and moves its arrays into the scene.
-    fn load(&mut self, entry: &Placed) -> Result<PathBuf, SceneError> {
-        let path = self.resolve(&entry.file);
-        if self.sources.contains_key(&path) {
-            return Ok(path);
+    fn load(&mut self, entry: &Placed) -> Result<(PathBuf, u32), SceneError> {
+        let key = (self.resolve_model(&entry.file)?, entry.subdivide.0);
+        if self.sources.contains_key(&key) {
+            return Ok(key);
         }
-        let mut source = gltf_file::load(&path)?;
+        let mut source = gltf_file::load(&key.0)?;
+        for _ in 0..key.1 {
+            self.subdivide(entry, &mut source)?;
+        }
         let scene = &mut self.scene;
         let (first_mesh, first_material) = (scene.meshes.len(), scene.materials.len());
         let first_image = scene.images.len();
@@ -146,8 +169,23 @@ impl<'a> Builder<'a> {
             instance.mesh += first_mesh;
             instance.material += first_material;
         }
-        self.sources.insert(path.clone(), source);
-        Ok(path)
+        self.sources.insert(key.clone(), source);
+        Ok(key)
+    }
+
+    /// Cuts all triangles of a file into four.
+    fn subdivide(&self, entry: &Placed, source: &mut Scene) -> Result<(), SceneError> {
+        let item = entry.file.display().to_string();
+        if !source.skins.is_empty() {
+            let problem = "a skinned mesh cannot be subdivided".to_owned();
+            return Err(invalid(self.file, item, problem, "leave out subdivide"));
+        }
+        for mesh in &mut source.meshes {
+            let most = mesh.positions.len() as u64 + mesh.indices.len() as u64;
+            at_most(self.file, &item, most, MAX_VERTICES, "vertices", "subdivide less often")?;
+            *mesh = subdivide(mesh);
+        }
+        Ok(())
     }
 
     fn override_material(&mut self, entry: &Placed) -> Option<usize> {

@@ -7,7 +7,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::values::{
-    Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Vector, ViewDegrees,
+    Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Times, Vector,
+    ViewDegrees,
 };
 use crate::exposure::scale_of_ev;
 use crate::light::{Blocker, Emitter, EmitterShape, Medium};
@@ -36,15 +37,18 @@ pub(super) struct SceneFile {
 }
 
 /// `[[gltf]]` and `[[instance]]`: a file and where it goes.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Placed {
     pub(super) file: PathBuf,
     pub(super) mesh: Option<Spanned<String>>,
-    translation: Option<Vector>,
+    /// How often each triangle is cut into four.
     #[serde(default)]
-    rotation: Rotation,
-    scale: Option<Scale>,
+    pub(super) subdivide: Times,
+    pub(super) translation: Option<Vector>,
+    #[serde(default)]
+    pub(super) rotation: Rotation,
+    pub(super) scale: Option<Scale>,
     pub(super) material: Option<MaterialTable>,
 }
 
@@ -141,6 +145,7 @@ pub(super) struct EmitterTable {
 }
 
 #[derive(Deserialize)]
+    to: Option<Vector>,
 #[serde(deny_unknown_fields)]
 struct EmitterFields {
     name: Option<String>,
@@ -151,6 +156,7 @@ struct EmitterFields {
 }
 
 impl TryFrom<EmitterFields> for EmitterTable {
+    to: Option<Vector>,
     type Error = &'static str;
 
     fn try_from(fields: EmitterFields) -> Result<Self, Self::Error> {
@@ -161,7 +167,7 @@ impl TryFrom<EmitterFields> for EmitterTable {
                 return Err("an emitter has either a radius (m) of a sphere or the size (m, three) of a box");
             }
         };
-        Ok(Self { name: fields.name, center: fields.center, shape, radiance: fields.radiance })
+        Ok(Self { name: fields.name, center: fields.center, shape, radiance: fields.radiance, to: fields.to })
     }
 }
 
@@ -175,6 +181,7 @@ impl EmitterTable {
         }
     }
 }
+            to: self.to.map(|to| Vec3::from(to).into()),
 
 /// `[[blocker]]`.
 #[derive(Debug, Deserialize)]

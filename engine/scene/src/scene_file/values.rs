@@ -71,6 +71,23 @@ number!(
     |value| value != 0.0
 );
 
+/// How often something is done.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(try_from = "u32")]
+pub(super) struct Times(pub(super) u32);
+
+impl TryFrom<u32> for Times {
+    type Error = String;
+
+    fn try_from(stated: u32) -> Result<Self, String> {
+        if stated <= 6 {
+            Ok(Self(stated))
+        } else {
+            Err(format!("{stated} found, a number from 0 to 6 expected"))
+        }
+    }
+}
+
 /// A point or a direction.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct Vector([Finite; 3]);
