@@ -17,17 +17,22 @@
 #include <stdint.h>
 
 /**
- * The instance brings light of each vertex, bound as `AIRGLOW_RESOURCE_VERTEX_LIGHT`.
+ * Pixels along a side of a tile.
+ */
+#define AIRGLOW_FOG_TILE 64
+
+/**
+ * The instance brings light of each vertex, bound as `AIRGLOW_RELIGHT_RESOURCE_VERTEX_LIGHT`.
  */
 #define AIRGLOW_INPUT_LIGHT 1
 
 /**
- * The instance brings dynamic visibility, bound as `AIRGLOW_RESOURCE_VISIBILITY`.
+ * The instance brings dynamic visibility, bound as `AIRGLOW_RELIGHT_RESOURCE_VISIBILITY`.
  */
 #define AIRGLOW_INPUT_VISIBILITY 2
 
 /**
- * The instance brings normals, bound as `AIRGLOW_RESOURCE_NORMALS`.
+ * The instance brings normals, bound as `AIRGLOW_RELIGHT_RESOURCE_NORMALS`.
  */
 #define AIRGLOW_INPUT_NORMALS 4
 
@@ -168,6 +173,35 @@ typedef uint32_t AirglowBelowHorizon;
 #endif // __cplusplus
 
 /**
+ * What a background uses.
+ */
+enum AirglowFogBackgroundResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The environment of the host's, equirectangular, linear radiance; its first mip.
+   */
+  AIRGLOW_FOG_BACKGROUND_RESOURCE_ENVIRONMENT = 0,
+  /**
+   * The picture of the host's, equirectangular, of any size, in the format of the settings; all of it is written.
+   */
+  AIRGLOW_FOG_BACKGROUND_RESOURCE_TARGET = 1,
+  /**
+   * Sums over parts of the environment.
+   */
+  AIRGLOW_FOG_BACKGROUND_RESOURCE_PARTS = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowFogBackgroundResource AirglowFogBackgroundResource;
+#else
+typedef uint32_t AirglowFogBackgroundResource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * The kind of phase function; its numbers come with a view.
  */
 enum AirglowFogPhase
@@ -255,6 +289,32 @@ typedef uint32_t AirglowFogResource;
 #endif // __cplusplus
 
 /**
+ * What a picture of an environment holds.
+ */
+enum AirglowFogSeen
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * All that is seen: what arrives straight, and the glow.
+   */
+  AIRGLOW_FOG_SEEN_WHOLE = 0,
+  /**
+   * The glow alone, smooth but for its peaks: for a host that has a smaller picture of it, and adds exp(-optical
+   * distance) of the environment itself.
+   */
+  AIRGLOW_FOG_SEEN_GLOW = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowFogSeen AirglowFogSeen;
+#else
+typedef uint32_t AirglowFogSeen;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * The light of a frame.
  */
 enum AirglowLight
@@ -271,11 +331,11 @@ enum AirglowLight
    */
   AIRGLOW_LIGHT_ENVIRONMENT = 1,
   /**
-   * An environment in an image of the host's, bound as `AIRGLOW_RESOURCE_ENVIRONMENT`.
+   * An environment in an image of the host's, bound as `AIRGLOW_RELIGHT_RESOURCE_ENVIRONMENT`.
    */
   AIRGLOW_LIGHT_ENVIRONMENT_IMAGE = 2,
   /**
-   * SH RGB in a buffer of the host's, bound as `AIRGLOW_RESOURCE_UNIFORM_LIGHT`: four floats a coefficient, the
+   * SH RGB in a buffer of the host's, bound as `AIRGLOW_RELIGHT_RESOURCE_UNIFORM_LIGHT`: four floats a coefficient, the
    * fourth unused.
    */
   AIRGLOW_LIGHT_UNIFORM = 3,
@@ -505,10 +565,10 @@ typedef uint32_t AirglowPlanFormat;
 #endif // __cplusplus
 
 /**
- * What a step of the pass uses. With `AIRGLOW_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
+ * What a step of the pass uses. With `AIRGLOW_RELIGHT_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
  * `..._VERTEX_LIGHT`, `..._VISIBILITY` and `..._NORMALS` an instance's in the frame; otherwise it is 0.
  */
-enum AirglowResource
+enum AirglowRelightResource
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -516,77 +576,77 @@ enum AirglowResource
   /**
    * The environment's image.
    */
-  AIRGLOW_RESOURCE_ENVIRONMENT = 0,
+  AIRGLOW_RELIGHT_RESOURCE_ENVIRONMENT = 0,
   /**
    * Integrals of the basis over the columns of the environment.
    */
-  AIRGLOW_RESOURCE_COLUMN_TABLE = 1,
+  AIRGLOW_RELIGHT_RESOURCE_COLUMN_TABLE = 1,
   /**
    * Integrals of the basis over the rows of the environment.
    */
-  AIRGLOW_RESOURCE_ROW_TABLE = 2,
+  AIRGLOW_RELIGHT_RESOURCE_ROW_TABLE = 2,
   /**
    * Sums over the columns of each row.
    */
-  AIRGLOW_RESOURCE_ROW_SUMS = 3,
+  AIRGLOW_RELIGHT_RESOURCE_ROW_SUMS = 3,
   /**
    * The environment's coefficients in the frame of its map.
    */
-  AIRGLOW_RESOURCE_MAP_COEFFICIENTS = 4,
+  AIRGLOW_RELIGHT_RESOURCE_MAP_COEFFICIENTS = 4,
   /**
    * The environment's coefficients; kept from frame to frame.
    */
-  AIRGLOW_RESOURCE_ENVIRONMENT_LIGHT = 5,
+  AIRGLOW_RELIGHT_RESOURCE_ENVIRONMENT_LIGHT = 5,
   /**
    * SH RGB light of the host.
    */
-  AIRGLOW_RESOURCE_UNIFORM_LIGHT = 6,
+  AIRGLOW_RELIGHT_RESOURCE_UNIFORM_LIGHT = 6,
   /**
    * The light in the space of each instance.
    */
-  AIRGLOW_RESOURCE_LIGHTS = 7,
+  AIRGLOW_RELIGHT_RESOURCE_LIGHTS = 7,
   /**
    * The sparse triple-product tensor.
    */
-  AIRGLOW_RESOURCE_TENSOR = 8,
+  AIRGLOW_RELIGHT_RESOURCE_TENSOR = 8,
   /**
    * The product matrix of each instance's light.
    */
-  AIRGLOW_RESOURCE_MATRICES = 9,
+  AIRGLOW_RELIGHT_RESOURCE_MATRICES = 9,
   /**
    * The baked vectors of a mesh.
    */
-  AIRGLOW_RESOURCE_VECTORS = 10,
+  AIRGLOW_RELIGHT_RESOURCE_VECTORS = 10,
   /**
    * The light of each vertex of an instance: `3 * order^2` floats a vertex.
    */
-  AIRGLOW_RESOURCE_VERTEX_LIGHT = 11,
+  AIRGLOW_RELIGHT_RESOURCE_VERTEX_LIGHT = 11,
   /**
    * The dynamic visibility of each vertex of an instance: `order^2` floats a vertex.
    */
-  AIRGLOW_RESOURCE_VISIBILITY = 12,
+  AIRGLOW_RELIGHT_RESOURCE_VISIBILITY = 12,
   /**
    * The normals of an instance's vertices: 3 floats a vertex.
    */
-  AIRGLOW_RESOURCE_NORMALS = 13,
+  AIRGLOW_RELIGHT_RESOURCE_NORMALS = 13,
   /**
    * The packed rectangle of the fragment method.
    */
-  AIRGLOW_RESOURCE_RECTANGLE = 14,
+  AIRGLOW_RELIGHT_RESOURCE_RECTANGLE = 14,
   /**
    * The results of all instances.
    */
-  AIRGLOW_RESOURCE_RESULTS = 15,
+  AIRGLOW_RELIGHT_RESOURCE_RESULTS = 15,
   /**
    * Counters of bad texels.
    */
-  AIRGLOW_RESOURCE_HEALTH = 16,
+  AIRGLOW_RELIGHT_RESOURCE_HEALTH = 16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
-typedef enum AirglowResource AirglowResource;
+typedef enum AirglowRelightResource AirglowRelightResource;
 #else
-typedef uint32_t AirglowResource;
+typedef uint32_t AirglowRelightResource;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -627,13 +687,13 @@ typedef struct AirglowContext AirglowContext;
 typedef struct AirglowFog AirglowFog;
 
 /**
- * A view of the pass, ready to be recorded, in as many frames as wanted. One thread at a time.
+ * Convolves environments of one size with what a medium does to a point of light, for the eye. Any thread may use it.
  */
-typedef struct AirglowFogPrepared AirglowFogPrepared;
+typedef struct AirglowFogBackground AirglowFogBackground;
 
 /**
- * A frame of the pass, ready to be recorded, and again in later frames while meshes, light and sizes stay. One thread
- * at a time.
+ * A frame of a pass, ready to be recorded, and again in later frames: a pass has functions that change it in between.
+ * One thread at a time. It may outlive its pass.
  */
 typedef struct AirglowPrepared AirglowPrepared;
 
@@ -1094,19 +1154,63 @@ typedef struct AirglowFogSettings {
    */
   uint32_t phase;
   /**
-   * 1: a medium may thin with height.
+   * 1: a medium may thin with height. Not with an environment.
    */
   uint32_t height;
   /**
-   * Not used; 0.
+   * 1: views may have an environment behind the medium.
    */
-  uint32_t reserved;
+  uint32_t environment;
   /**
    * Radiance, W/sr/m2, below which the airlight of one light is left out of a pixel; 0 is 1e-4, below 0 nothing is left
    * out.
    */
   double bound;
 } AirglowFogSettings;
+
+/**
+ * What a background is made for.
+ */
+typedef struct AirglowFogBackgroundSettings {
+  /**
+   * `sizeof(AirglowFogBackgroundSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * `VkFormat` of the picture that is written; 0 is `VK_FORMAT_R32G32B32A32_SFLOAT`.
+   */
+  uint32_t format;
+  /**
+   * Texels of a row of the environment.
+   */
+  uint32_t width;
+  /**
+   * Rows of the environment.
+   */
+  uint32_t height;
+} AirglowFogBackgroundSettings;
+
+/**
+ * The medium before an environment, and what the picture holds.
+ */
+typedef struct AirglowFogBackgroundView {
+  /**
+   * `sizeof(AirglowFogBackgroundView)`.
+   */
+  uint32_t struct_size;
+  /**
+   * An `AirglowFogSeen`.
+   */
+  uint32_t seen;
+  /**
+   * Extinction times the metres to the environment, of red, green and blue.
+   */
+  double optical_distance[3];
+  /**
+   * What of the extinction is scattering, 0 to 1 each.
+   */
+  double albedo[3];
+} AirglowFogBackgroundView;
 
 /**
  * A host's conventions: axes, units, winding, depth, exposure. All zero is airglow's own: metres, right-handed, +Y up,
@@ -1291,20 +1395,37 @@ typedef struct AirglowFogView {
    * How many.
    */
   size_t light_count;
+  /**
+   * Radiance of what lies behind the scene, without the medium, W/sr/m2: red, green and blue of each of 9 coefficients
+   * of spherical harmonics, in right-handed axes with +Y up. Null: darkness. Some needs `environment` in the settings.
+   */
+  const double *environment;
+  /**
+   * How far its light comes through the medium, in the host's units.
+   */
+  double environment_distance;
 } AirglowFogView;
 
 /**
- * Lights of a view.
+ * Lights of a view, and pairs of a tile of the picture and a light.
  */
 typedef struct AirglowFogCounts {
   /**
-   * Those whose airlight passes the bound somewhere in the picture.
+   * Lights whose airlight passes the bound somewhere in the picture.
    */
   uint32_t evaluated;
   /**
-   * Those left out: dark, too weak, or out of reach of every pixel.
+   * Lights left out: dark, too weak, or out of reach of every pixel.
    */
   uint32_t left_out;
+  /**
+   * Pairs of a tile, `AIRGLOW_FOG_TILE` pixels on a side, and a light that is evaluated in it.
+   */
+  uint32_t pairs;
+  /**
+   * Pairs left out: with those evaluated, as many as there are tiles times lights.
+   */
+  uint32_t pairs_left_out;
 } AirglowFogCounts;
 
 /**
@@ -1312,11 +1433,11 @@ typedef struct AirglowFogCounts {
  */
 typedef struct AirglowAccess {
   /**
-   * An `AirglowResource`, in fog an `AirglowFogResource`.
+   * An enumeration of the pass: `AirglowRelightResource`, `AirglowFogResource` and the like.
    */
   uint32_t resource;
   /**
-   * See there.
+   * See there; 0 where nothing is said.
    */
   uint32_t index;
   /**
@@ -1354,15 +1475,57 @@ typedef struct AirglowAccess {
 } AirglowAccess;
 
 /**
+ * One resource of a frame. Elements of arrays never grow; names live as long as the prepared frame.
+ */
+typedef struct AirglowResourceInfo {
+  /**
+   * See `AirglowAccess`.
+   */
+  uint32_t resource;
+  /**
+   * See `AirglowAccess`.
+   */
+  uint32_t index;
+  /**
+   * An `AirglowOrigin`.
+   */
+  uint32_t origin;
+  /**
+   * `VkFormat` of a scratch image; 0 otherwise.
+   */
+  uint32_t format;
+  /**
+   * Bytes of a buffer, or of the texels of a scratch image; 0 for an image of the host's. A device may pad it.
+   */
+  uint64_t bytes;
+  /**
+   * Width and height of a scratch image; 0 otherwise.
+   */
+  uint32_t extent[2];
+  /**
+   * `VkBufferUsageFlags` or `VkImageUsageFlags` that the frame needs.
+   */
+  uint32_t usage;
+  /**
+   * 1: an image.
+   */
+  uint32_t is_image;
+  /**
+   * Its name.
+   */
+  const char *name;
+} AirglowResourceInfo;
+
+/**
  * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
  */
 typedef struct AirglowBinding {
   /**
-   * An `AirglowResource`, in fog an `AirglowFogResource`.
+   * See `AirglowAccess`.
    */
   uint32_t resource;
   /**
-   * See there.
+   * See `AirglowAccess`.
    */
   uint32_t index;
   /**
@@ -1442,70 +1605,6 @@ typedef struct AirglowRelightSettings {
 } AirglowRelightSettings;
 
 /**
- * One resource of a frame. Elements of arrays never grow; names live as long as the prepared frame.
- */
-typedef struct AirglowResourceInfo {
-  /**
-   * An `AirglowResource`.
-   */
-  uint32_t resource;
-  /**
-   * See `AirglowResource`.
-   */
-  uint32_t index;
-  /**
-   * An `AirglowOrigin`.
-   */
-  uint32_t origin;
-  /**
-   * `VkFormat` of a scratch image; 0 otherwise.
-   */
-  uint32_t format;
-  /**
-   * Bytes of a buffer, or of the texels of a scratch image; 0 for an image of the host's. A device may pad it.
-   */
-  uint64_t bytes;
-  /**
-   * Width and height of a scratch image; 0 otherwise.
-   */
-  uint32_t extent[2];
-  /**
-   * `VkBufferUsageFlags` or `VkImageUsageFlags` that the frame needs.
-   */
-  uint32_t usage;
-  /**
-   * 1: an image.
-   */
-  uint32_t is_image;
-  /**
-   * Its name.
-   */
-  const char *name;
-} AirglowResourceInfo;
-
-/**
- * Where the results of an instance lie in the buffer of results. Elements of arrays never grow.
- */
-typedef struct AirglowResultRange {
-  /**
-   * First byte: the offset of the instance's vertex buffer.
-   */
-  uint64_t offset;
-  /**
-   * Bytes.
-   */
-  uint64_t size;
-  /**
-   * Vertices.
-   */
-  uint32_t vertex_count;
-  /**
-   * Not used.
-   */
-  uint32_t reserved;
-} AirglowResultRange;
-
-/**
  * One appearance of a mesh. Elements of arrays never grow.
  */
 typedef struct AirglowRelightInstance {
@@ -1565,6 +1664,28 @@ typedef struct AirglowRelightFrame {
    */
   uint64_t environment_revision;
 } AirglowRelightFrame;
+
+/**
+ * Where the results of an instance lie in the buffer of results. Elements of arrays never grow.
+ */
+typedef struct AirglowResultRange {
+  /**
+   * First byte: the offset of the instance's vertex buffer.
+   */
+  uint64_t offset;
+  /**
+   * Bytes.
+   */
+  uint64_t size;
+  /**
+   * Vertices.
+   */
+  uint32_t vertex_count;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowResultRange;
 
 /**
  * Bytes that the settings take, before anything is made; a prepared frame says its own
@@ -1777,6 +1898,57 @@ AirglowStatus airglow_fog_new(const struct AirglowContext *context,
 void airglow_fog_drop(struct AirglowFog *fog);
 
 /**
+ * Adds what a background asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_fog_background_require(struct AirglowRequirements *requirements,
+                                             const struct AirglowFogBackgroundSettings *settings,
+                                             struct AirglowError *error);
+
+/**
+ * Makes a background: its kernels, and memory for 11 bytes a texel of the environment.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `background` may be written.
+ */
+AirglowStatus airglow_fog_background_new(const struct AirglowContext *context,
+                                         const struct AirglowFogBackgroundSettings *settings,
+                                         struct AirglowFogBackground **background,
+                                         struct AirglowError *error);
+
+/**
+ * Drops a background; what was prepared stays usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_fog_background_drop(struct AirglowFogBackground *background);
+
+/**
+ * Prepares the picture of an environment in a medium. It is no work for every frame: record it when the environment or
+ * the medium before it has changed.
+ *
+ * The caller promises:
+ * `view` points at as many bytes as it says; `prepared` may be written.
+ */
+AirglowStatus airglow_fog_background_prepare(const struct AirglowFogBackground *background,
+                                             const struct AirglowFogBackgroundView *view,
+                                             struct AirglowPrepared **prepared,
+                                             struct AirglowError *error);
+
+/**
+ * Sets the medium of a prepared picture, which counts from the next recording on. On an error the old one stays.
+ *
+ * The caller promises:
+ * `view` points at as many bytes as it says.
+ */
+AirglowStatus airglow_fog_background_set(const struct AirglowPrepared *prepared,
+                                         const struct AirglowFogBackgroundView *view,
+                                         struct AirglowError *error);
+
+/**
  * Writes the plan that the library's graph makes of a view of `width * height` pixels: what it uses, its barriers, and
  * what was left out, why, and what would bring it back. The host's images are handed over as their use wants them; depth
  * is of 32 bits. The format is an `AirglowPlanFormat`.
@@ -1804,7 +1976,7 @@ AirglowStatus airglow_fog_prepare(const struct AirglowFog *fog,
                                   uint32_t width,
                                   uint32_t height,
                                   const struct AirglowFogView *view,
-                                  struct AirglowFogPrepared **prepared,
+                                  struct AirglowPrepared **prepared,
                                   struct AirglowError *error);
 
 /**
@@ -1815,56 +1987,81 @@ AirglowStatus airglow_fog_prepare(const struct AirglowFog *fog,
  * The caller promises:
  * As `airglow_fog_prepare`; `counts` is null or may be written.
  */
-AirglowStatus airglow_fog_set(const struct AirglowFogPrepared *prepared,
+AirglowStatus airglow_fog_set(const struct AirglowPrepared *prepared,
                               const struct AirglowFogView *view,
                               struct AirglowFogCounts *counts,
                               struct AirglowError *error);
 
 /**
- * Lists the uses of the host's images: one step, which reads surface and depth and writes the target. The host brings
- * each into that layout before, and waits for that use after. `*count` as with `airglow_prepared_accesses`.
+ * Lists every use of every resource, step by step. Before recording, the host makes its own resources, and the scratch,
+ * available to the first use listed of each, in that layout; afterwards it waits for the last. Between the steps the
+ * library stands its own barriers; layouts of scratch images are all its own. `*count` holds the size of
+ * `accesses` before and the number of uses after; with `accesses` null only the number is written.
  *
  * The caller promises:
  * `accesses` is null or has room for `*count` elements.
  */
-AirglowStatus airglow_fog_accesses(const struct AirglowFogPrepared *prepared,
-                                   struct AirglowAccess *accesses,
-                                   size_t *count,
-                                   struct AirglowError *error);
+AirglowStatus airglow_prepared_accesses(const struct AirglowPrepared *prepared,
+                                        struct AirglowAccess *accesses,
+                                        size_t *count,
+                                        struct AirglowError *error);
 
 /**
- * Records the pass into a command buffer of the host's: one rendering, without a barrier. Bound are the three resources.
- * State of the command buffer that is changed: pipeline, descriptor set 0, vertex buffer 0, viewport 0 and scissor 0 of
- * graphics. Rendering and labels are closed again.
- *
- * The last few sets of bindings are kept: recorded again with one of them, a view allocates nothing on the heap. Images
- * that were bound stay until `airglow_fog_forget` or until the prepared view is dropped.
+ * Lists every resource that the frame uses, with its bytes, before anything is made. `*count` as with
+ * `airglow_prepared_accesses`.
  *
  * The caller promises:
- * As `airglow_prepared_record`: the command buffer records outside rendering, bindings describe live images truly, and
- * these are in the layouts listed.
+ * `resources` is null or has room for `*count` elements.
  */
-AirglowStatus airglow_fog_record(const struct AirglowFogPrepared *prepared,
-                                 uint64_t command_buffer,
-                                 const struct AirglowBinding *bindings,
-                                 size_t binding_count,
-                                 struct AirglowError *error);
+AirglowStatus airglow_prepared_resources(const struct AirglowPrepared *prepared,
+                                         struct AirglowResourceInfo *resources,
+                                         size_t *count,
+                                         struct AirglowError *error);
 
 /**
- * Forgets the images that the view was recorded with: before the host destroys one of them.
+ * Makes the scratch of a frame, charged to its pass in the context's memory, for hosts that would not place it
+ * themselves. Calling it again makes it anew.
  *
  * The caller promises:
  * Nothing beyond the pointers being valid.
  */
-AirglowStatus airglow_fog_forget(const struct AirglowFogPrepared *prepared, struct AirglowError *error);
+AirglowStatus airglow_prepared_make_scratch(struct AirglowPrepared *prepared, struct AirglowError *error);
 
 /**
- * Drops a prepared view. Null is nothing.
+ * Records a frame into a command buffer of the host's: its steps, with barriers between them and none around them
+ * (`airglow_prepared_accesses`). Bound are the host's resources, and the scratch unless
+ * `airglow_prepared_make_scratch` made it. State of the command buffer that is changed: pipelines, descriptor set 0 and
+ * push constants of both bind points, vertex buffer 0, viewport 0, scissor 0. Rendering and labels are closed again.
+ *
+ * The last few sets of bindings are kept: recorded again with one of them, a frame allocates nothing on the heap. Images
+ * that were bound stay until `airglow_prepared_forget` or until the prepared frame is dropped.
+ *
+ * The caller promises:
+ * `command_buffer` is a primary `VkCommandBuffer` of a pool of the adopted queue family, recording, outside rendering,
+ * used by no one else meanwhile; it is submitted at most once, in the context's frame. Bindings describe live resources
+ * of the device truly, which stay until the frame is done; host and scratch resources are in the states listed.
+ */
+AirglowStatus airglow_prepared_record(const struct AirglowPrepared *prepared,
+                                      uint64_t command_buffer,
+                                      const struct AirglowBinding *bindings,
+                                      size_t binding_count,
+                                      struct AirglowError *error);
+
+/**
+ * Forgets the resources that the frame was recorded with: before the host destroys an image among them.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_prepared_forget(const struct AirglowPrepared *prepared, struct AirglowError *error);
+
+/**
+ * Drops a prepared frame. Null is nothing.
  *
  * The caller promises:
  * The pointer is not used again.
  */
-void airglow_fog_prepared_drop(struct AirglowFogPrepared *prepared);
+void airglow_prepared_drop(struct AirglowPrepared *prepared);
 
 /**
  * Adds what the pass asks of a device with these settings.
@@ -1950,44 +2147,6 @@ AirglowStatus airglow_relight_set_environment(const struct AirglowRelight *relig
                                               struct AirglowError *error);
 
 /**
- * Lists every use of every resource, step by step. Before recording, the host makes its own resources, and the scratch,
- * available to the first use listed of each, in that layout; afterwards it waits for the last. Between the steps the
- * library stands its own barriers; the packed rectangle's layouts are all its own. `*count` holds the size of
- * `accesses` before and the number of uses after; with `accesses` null only the number is written.
- *
- * The caller promises:
- * `accesses` is null or has room for `*count` elements.
- */
-AirglowStatus airglow_prepared_accesses(const struct AirglowPrepared *prepared,
-                                        struct AirglowAccess *accesses,
-                                        size_t *count,
-                                        struct AirglowError *error);
-
-/**
- * Lists every resource that the frame uses, with its bytes, before anything is made. `*count` as with
- * `airglow_prepared_accesses`.
- *
- * The caller promises:
- * `resources` is null or has room for `*count` elements.
- */
-AirglowStatus airglow_prepared_resources(const struct AirglowPrepared *prepared,
-                                         struct AirglowResourceInfo *resources,
-                                         size_t *count,
-                                         struct AirglowError *error);
-
-/**
- * Lists where the results of each instance lie, in the order of the frame; none when the pass was left out. `*count` as
- * with `airglow_prepared_accesses`.
- *
- * The caller promises:
- * `ranges` is null or has room for `*count` elements.
- */
-AirglowStatus airglow_prepared_ranges(const struct AirglowPrepared *prepared,
-                                      struct AirglowResultRange *ranges,
-                                      size_t *count,
-                                      struct AirglowError *error);
-
-/**
  * Writes the plan that the library's graph makes of a frame: steps, barriers, lifetimes and bytes of what they use, and
  * what was left out, why, and what would bring it back. The host's resources stand in it with the sizes needed, handed
  * over as their first use wants them, the results going on to vertex input or to vertex shaders. The format is an
@@ -2015,13 +2174,16 @@ AirglowStatus airglow_relight_prepare(const struct AirglowRelight *relight,
                                       struct AirglowError *error);
 
 /**
- * Makes the scratch of a frame, charged to the pass in the context's memory, for hosts that would not place it
- * themselves. Calling it again is nothing.
+ * Lists where the results of each instance lie, in the order of the frame; none when the pass was left out. `*count` as
+ * with `airglow_prepared_accesses`.
  *
  * The caller promises:
- * Nothing beyond the pointers being valid.
+ * `ranges` is null or has room for `*count` elements.
  */
-AirglowStatus airglow_prepared_make_scratch(struct AirglowPrepared *prepared, struct AirglowError *error);
+AirglowStatus airglow_relight_ranges(const struct AirglowPrepared *prepared,
+                                     struct AirglowResultRange *ranges,
+                                     size_t *count,
+                                     struct AirglowError *error);
 
 /**
  * Turns the light and the instances of a prepared frame, in the frame's order; it counts from the next recording on. Of
@@ -2030,11 +2192,11 @@ AirglowStatus airglow_prepared_make_scratch(struct AirglowPrepared *prepared, st
  * The caller promises:
  * `light_rotation` has four values; `instances` has `instance_count` elements.
  */
-AirglowStatus airglow_prepared_turn(const struct AirglowPrepared *prepared,
-                                    const double *light_rotation,
-                                    const struct AirglowRelightInstance *instances,
-                                    size_t instance_count,
-                                    struct AirglowError *error);
+AirglowStatus airglow_relight_turn(const struct AirglowPrepared *prepared,
+                                   const double *light_rotation,
+                                   const struct AirglowRelightInstance *instances,
+                                   size_t instance_count,
+                                   struct AirglowError *error);
 
 /**
  * Shows (1) or hides (0) an instance of a prepared frame, and says whether its dynamic visibility blocks anything (1) or
@@ -2044,11 +2206,11 @@ AirglowStatus airglow_prepared_turn(const struct AirglowPrepared *prepared,
  * The caller promises:
  * Nothing beyond the pointers being valid.
  */
-AirglowStatus airglow_prepared_show(const struct AirglowPrepared *prepared,
-                                    size_t instance,
-                                    uint32_t shown,
-                                    uint32_t shadowed,
-                                    struct AirglowError *error);
+AirglowStatus airglow_relight_show(const struct AirglowPrepared *prepared,
+                                   size_t instance,
+                                   uint32_t shown,
+                                   uint32_t shadowed,
+                                   struct AirglowError *error);
 
 /**
  * Puts the light of a prepared frame on (1) or out (0), from the next recording on. While it is out nothing is recorded:
@@ -2057,45 +2219,9 @@ AirglowStatus airglow_prepared_show(const struct AirglowPrepared *prepared,
  * The caller promises:
  * Nothing beyond the pointers being valid.
  */
-AirglowStatus airglow_prepared_set_lit(const struct AirglowPrepared *prepared,
-                                       uint32_t lit,
-                                       struct AirglowError *error);
-
-/**
- * Drops a prepared frame. Null is nothing.
- *
- * The caller promises:
- * The pointer is not used again.
- */
-void airglow_prepared_drop(struct AirglowPrepared *prepared);
-
-/**
- * Records a frame into a command buffer of the host's: its steps, with barriers between them and none around them
- * (`airglow_prepared_accesses`). Bound are the host's resources, and the scratch unless
- * `airglow_prepared_make_scratch` made it. State of the command buffer that is changed: pipelines, descriptor set 0 and
- * push constants of both bind points, viewport 0, scissor 0. Rendering and labels are closed again.
- *
- * The last few sets of bindings are kept: recorded again with one of them, a frame allocates nothing on the heap. Images
- * that were bound stay until `airglow_prepared_forget` or until the prepared frame is dropped.
- *
- * The caller promises:
- * `command_buffer` is a primary `VkCommandBuffer` of a pool of the adopted queue family, recording, outside rendering,
- * used by no one else meanwhile; it is submitted at most once, in the context's frame. Bindings describe live resources
- * of the device truly, which stay until the frame is done; host and scratch resources are in the states listed.
- */
-AirglowStatus airglow_prepared_record(const struct AirglowPrepared *prepared,
-                                      uint64_t command_buffer,
-                                      const struct AirglowBinding *bindings,
-                                      size_t binding_count,
+AirglowStatus airglow_relight_set_lit(const struct AirglowPrepared *prepared,
+                                      uint32_t lit,
                                       struct AirglowError *error);
-
-/**
- * Forgets the resources that the frame was recorded with: before the host destroys an image among them.
- *
- * The caller promises:
- * Nothing beyond the pointers being valid.
- */
-AirglowStatus airglow_prepared_forget(const struct AirglowPrepared *prepared, struct AirglowError *error);
 
 /**
  * Says the bytes of a mesh of `vertex_count` vertices and of its results.

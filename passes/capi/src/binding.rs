@@ -5,15 +5,16 @@ use airglow_gpu::ash::{vk, vk::Handle};
 use airglow_gpu::{BufferSlice, Context, GpuError, ImageView, Label, ViewDesc};
 use airglow_graph::{BufferDesc, ImageDesc};
 
+use crate::access::{Number, Uses};
 use crate::status::Failure;
 
 /// A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct AirglowBinding {
-    /// An `AirglowResource`, in fog an `AirglowFogResource`.
+    /// See `AirglowAccess`.
     pub resource: u32,
-    /// See there.
+    /// See `AirglowAccess`.
     pub index: u32,
     /// The `VkBuffer`, or 0 for an image.
     pub buffer: u64,
@@ -36,6 +37,7 @@ pub struct AirglowBinding {
 }
 
 /// What a binding stands for, in the library's hands.
+#[derive(Clone)]
 pub(crate) enum Imported {
     /// The first mip of an image.
     Image(ImageView),
@@ -72,6 +74,69 @@ impl AirglowBinding {
             }
             _ => Err(GpuError::misuse(name, "give a buffer or an image, not both or none").into()),
         }
+    }
+}
+
+/// All that is bound for a recording.
+pub(crate) struct Bound<'a> {
+    uses: &'a Uses,
+    all: Vec<(Number, Imported)>,
+}
+
+impl<'a> Bound<'a> {
+    /// The scratch that was made, and the host's resources, which count where they are the same.
+    ///
+    /// # Safety
+    /// `given` describe live resources of the context's device truly.
+    pub(crate) unsafe fn new(
+        context: &Context,
+        uses: &'a Uses,
+        scratch: &[(Number, Imported)],
+        given: &[AirglowBinding],
+    ) -> Result<Self, Failure> {
+        let mut all = scratch.to_vec();
+        for binding in given {
+            let (row, name) = uses.wanted(binding)?;
+            // SAFETY: the caller vouches for what the binding says.
+            let imported = unsafe { binding.import(context, name)? };
+            match (&imported, row.is_image) {
+                (Imported::Image(_), 0) => return Err(Failure::argument(name, "give a buffer")),
+                (Imported::Buffer(_), 1) => return Err(Failure::argument(name, "give an image")),
+                _ => all.push(((row.resource, row.index), imported)),
+            }
+        }
+        Ok(Self { uses, all })
+    }
+
+    /// Each resource, later ones in the place of earlier ones of its number.
+    pub(crate) fn all(&self) -> &[(Number, Imported)] {
+        &self.all
+    }
+
+    /// A buffer that must be there.
+    pub(crate) fn buffer(&self, number: Number) -> Result<BufferSlice, Failure> {
+        match self.last(number)? {
+            Imported::Buffer(slice) => Ok(slice.clone()),
+            Imported::Image(_) => Err(self.missing(number)),
+        }
+    }
+
+    /// An image that must be there.
+    pub(crate) fn image(&self, number: Number) -> Result<ImageView, Failure> {
+        match self.last(number)? {
+            Imported::Image(view) => Ok(view.clone()),
+            Imported::Buffer(_) => Err(self.missing(number)),
+        }
+    }
+
+    fn last(&self, number: Number) -> Result<&Imported, Failure> {
+        let found = self.all.iter().rfind(|(bound, _)| *bound == number);
+        found.map(|(_, imported)| imported).ok_or_else(|| self.missing(number))
+    }
+
+    fn missing(&self, number: Number) -> Failure {
+        let name = self.uses.find(number).map_or("a resource", |(_, name)| name);
+        Failure::argument(name, "it is not bound: add it to the bindings")
     }
 }
 

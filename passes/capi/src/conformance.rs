@@ -8,9 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use airglow_conformance::{HostDevice, Refusal};
 use airglow_gpu::Requirements;
 use airglow_gpu::ash::{vk, vk::Handle};
-use airglow_graph::Access;
 
-use crate::access::AirglowAccess;
 use crate::context::{AirglowAdoptInfo, AirglowContext, airglow_context_adopt, enabled};
 use crate::input::{Versioned, exclusive, store, versioned};
 use crate::physical::{AirglowFunction, get_instance_proc_addr};
@@ -197,24 +195,6 @@ macro_rules! attempt {
     }};
 }
 pub(crate) use attempt;
-
-/// The first and the last use listed of a resource.
-pub(crate) fn ends(uses: &[AirglowAccess], resource: u32) -> Result<Option<(Access, Access)>, Refusal> {
-    let all = uses.iter().filter(|used| used.resource == resource).map(known);
-    let all = all.collect::<Result<Vec<_>, _>>()?;
-    Ok(all.first().copied().zip(all.last().copied()))
-}
-
-/// The access of the table that has those numbers.
-fn known(used: &AirglowAccess) -> Result<Access, Refusal> {
-    let numbers = (used.stage, used.access, used.writes != 0);
-    let same = |access: &&Access| {
-        (access.stage().as_raw(), access.access().as_raw(), access.writes()) == numbers
-            && (used.layout == 0 || access.layout().as_raw() as u32 == used.layout)
-    };
-    let found = Access::ALL.iter().find(same).copied();
-    found.ok_or_else(|| format!("no use has stage {:#x} and access {:#x}", used.stage, used.access).into())
-}
 
 /// A function of Vulkan as the header has it.
 pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {

@@ -16,8 +16,10 @@ pub mod context;
 pub mod fog;
 mod input;
 pub mod needs;
+mod pass;
 pub mod physical;
 pub mod plan;
+pub mod prepared;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod requirements;
@@ -25,6 +27,8 @@ pub mod status;
 #[cfg(test)]
 mod testing;
 pub mod text;
+#[cfg(any(test, feature = "conformance"))]
+mod through_c;
 pub mod world;
 
 /// The version of the library: major in the highest 10 bits, minor in the next 10, patch in the lowest 12.

@@ -1,7 +1,8 @@
 //! Plans as text, JSON or a diagram.
 #![allow(dead_code, reason = "helpers of passes, of which there may be none")]
 
-use airglow_graph::Plan;
+use airglow_gpu::{Context, Record};
+use airglow_graph::Graph;
 
 use crate::status::Failure;
 use crate::text::{AirglowText, write_text};
@@ -18,20 +19,23 @@ pub enum AirglowPlanFormat {
     Mermaid = 2,
 }
 
-/// Writes a plan in the format that the host numbers.
+/// Compiles a graph and writes its plan in the format that the host numbers.
 ///
 /// # Safety
 /// As [`write_text`].
-pub(crate) unsafe fn write_plan<R>(
-    plan: &Plan<R>,
+pub(crate) unsafe fn write_plan(
+    context: &Context,
+    graph: Graph<Record>,
     format: u32,
     text: *mut AirglowText,
 ) -> Result<(), Failure> {
     const JSON: u32 = AirglowPlanFormat::Json as u32;
     const MERMAID: u32 = AirglowPlanFormat::Mermaid as u32;
+    let problem = |error: &dyn std::error::Error| Failure::argument("the frame", &error.to_string());
+    let plan = graph.compile(&context.graph_limits()).map_err(|error| problem(&error))?;
     let written = match format {
         0 => plan.text(),
-        JSON => plan.json().map_err(|error| Failure::argument("the plan", &error.to_string()))?,
+        JSON => plan.json().map_err(|error| problem(&error))?,
         MERMAID => plan.mermaid(),
         _ => return Err(Failure::argument("format", "give an AirglowPlanFormat")),
     };

@@ -4,10 +4,11 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use airglow_gpu::ash::vk::{self, BufferUsageFlags, ImageLayout};
+use airglow_gpu::requirements::FormatNeed;
 use airglow_gpu::{
     Binding, BindingDesc, BindingKind, Blend, Buffer, ColorAttachment, ComputePipeline, ComputePipelineDesc,
     Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Image, ImageView, Imports, Label, Load,
-    Location, Record, Recorder, Rendering,
+    Location, Record, Recorder, Rendering, Requirements,
 };
 use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
 use bytemuck::{Pod, Zeroable};
@@ -80,6 +81,15 @@ pub struct Asked {
 }
 
 impl Background {
+    /// What a device must offer for results of `format`.
+    #[must_use]
+    pub fn requirements(format: vk::Format) -> Requirements {
+        let mut requirements = Requirements::engine().with_descriptors(&BACKGROUND_BINDINGS);
+        let usage = vk::FormatFeatureFlags::COLOR_ATTACHMENT;
+        requirements.formats.push(FormatNeed { format, usage, why: "an environment through the medium" });
+        requirements
+    }
+
     /// For environments of `size` texels; the result is of `format`.
     ///
     /// # Errors
@@ -115,6 +125,12 @@ impl Background {
         })?;
         let parts = context.create_buffer(label, &desc, Location::Device)?;
         Ok(Self { size, parts, reduce, gather, made: Arc::default() })
+    }
+
+    /// Bytes that it holds on the device.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.parts.size()
     }
 
     /// Adds `map`, the one image of the host's that this background is kept in, to a graph, to be sampled by fragment
@@ -171,9 +187,10 @@ impl Background {
         Ok(target)
     }
 
-    /// Records, without a graph, the convolution of an equirectangular `environment` into `target`, of any size. The environment is to be
-    /// readable by compute and fragment shaders ([`Access::ComputeSampled`], [`Access::FragmentSampled`]), the target
-    /// ready as a colour attachment; barriers between its own steps are made here.
+    /// Records, without a graph, the convolution of an equirectangular `environment` into `target`, of any size. The
+    /// environment is to be readable by compute shaders ([`Access::ComputeSampled`]), the target ready as a colour
+    /// attachment; afterwards the environment is in use by fragment shaders, in the same layout. Barriers between its own
+    /// steps, and after those of an earlier recording, are made here.
     ///
     /// # Errors
     /// [`FogError::Range`], [`FogError::Gpu`] for views that do not fit.
@@ -187,8 +204,11 @@ impl Background {
     ) -> Result<(), FogError> {
         distant.check()?;
         let bound = self.bound(environment);
+        recorder.memory_barrier(Access::FragmentStorageRead, Access::ComputeStorageWrite)?;
         self.reduce(recorder, &bound)?;
         recorder.memory_barrier(Access::ComputeStorageWrite, Access::FragmentStorageRead)?;
+        // What the host made visible to compute shaders.
+        recorder.memory_barrier(Access::ComputeSampled, Access::FragmentSampled)?;
         self.gather(recorder, &bound, target, distant, seen).map_err(FogError::Gpu)
     }
 

@@ -7,10 +7,10 @@ use airglow_fog::{
     Settings, View,
 };
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
-use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
+use airglow_gpu::{Context, Options, Record, Recorder, Requirements};
 use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_math::World;
-use airglow_tests::conformance::{Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
 use airglow_tests::reflect::Module;
 use glam::DVec3;
 
@@ -70,18 +70,9 @@ impl Room for Fogged {
         ]
     }
 
-    fn add(
-        &mut self,
-        _: &Context,
-        graph: &mut Graph<Record>,
-        _: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal> {
-        let [Named::Image(surface), Named::Image(depth), Named::Image(picture)] = *host else {
-            return Err("other resources".into());
-        };
-        let frame = Frame { size: SIZE, surface, depth, target: Some(picture), view: view() };
-        self.fog.add(graph, &frame)?;
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
+        let (surface, depth, target) = (to.image(0)?, to.image(1)?, Some(to.image(2)?));
+        self.fog.add(to.graph, &Frame { size: SIZE, surface, depth, target, view: view() })?;
         Ok(())
     }
 
@@ -93,13 +84,9 @@ impl Room for Fogged {
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        let (Some(pass), [Given::Image(surface), Given::Image(depth), Given::Image(picture)]) =
-            (&self.pass, host)
-        else {
-            return Err("other resources".into());
-        };
-        let target = picture.full_view()?;
-        let bindings = Bindings { surface: surface.full_view()?, depth: depth.full_view()?, target };
+        let pass = self.pass.as_ref().ok_or("not prepared")?;
+        let view = |place: usize| host[place].image().map(|image| image.full_view());
+        let bindings = Bindings { surface: view(0)??, depth: view(1)??, target: view(2)?? };
         Ok(pass.record(recorder, &bindings)?)
     }
 }

@@ -4,16 +4,14 @@ mod host;
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
 use airglow_gpu::requirements::Limit;
-use airglow_gpu::{
-    Buffer, Context, DeviceMask, Imports, Label, Location, Options, Record, Recorder, Requirements,
-};
-use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, ResourceDesc};
+use airglow_gpu::{Buffer, Context, DeviceMask, Label, Location, Options, Recorder, Requirements};
+use airglow_graph::{Access, BufferDesc, ImageDesc, ResourceDesc};
 use airglow_relight::{
     Bindings, Environment, Frame, Instance, Light, MeshId, Method, Need, Prepared, Relight, Resource,
     Settings,
 };
 use airglow_tests::compare::assert_close;
-use airglow_tests::conformance::{Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
 use glam::DQuat;
 use host::Numbers;
 use std::process::Command;
@@ -69,16 +67,9 @@ impl Room for Relit {
         ]
     }
 
-    fn add(
-        &mut self,
-        context: &Context,
-        graph: &mut Graph<Record>,
-        imports: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal> {
-        let [Named::Image(sky), Named::Buffer(results)] = host else { return Err("other resources".into()) };
-        let frame = self.frame(*sky, *results);
-        self.relight.add(context, graph, imports, &frame)?;
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
+        let frame = self.frame(to.image(0)?, to.buffer(1)?);
+        self.relight.add(to.context, to.graph, to.imports, &frame)?;
         Ok(())
     }
 
@@ -116,13 +107,9 @@ impl Room for Relit {
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        let (Some((prepared, bindings, _)), [Given::Image(sky), Given::Buffer(results)]) =
-            (&mut self.prepared, host)
-        else {
-            return Err("other resources".into());
-        };
-        bindings.images.insert(Resource::Environment, sky.full_view()?);
-        bindings.buffers.insert(Resource::Results, results.into());
+        let (prepared, bindings, _) = self.prepared.as_mut().ok_or("not prepared")?;
+        bindings.images.insert(Resource::Environment, host[0].image()?.full_view()?);
+        bindings.buffers.insert(Resource::Results, host[1].buffer()?.into());
         Ok(prepared.record(recorder, bindings)?)
     }
 }

@@ -4,6 +4,7 @@
 //! It checks bits, layouts, command-buffer state, and that nothing stays alive, and returns what is wrong as an error. What
 //! validation says is for whoever made the device to hear.
 
+mod declared;
 mod host;
 pub mod plan;
 mod roads;
@@ -11,12 +12,12 @@ pub mod shim;
 
 use crate::shim::{ACTIONS, Call, STATE};
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Buffer, Context, Image, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph as graph;
-use airglow_graph::{Access, BufferDesc, Graph, Handle, ImageDesc, State};
+use airglow_gpu::{Buffer, Context, Image, Options, Recorder, Requirements};
+use airglow_graph::{Access, BufferDesc, ImageDesc, State};
 use host::Host;
 use std::error::Error;
 
+pub use declared::{Declared, Named, copy_mips};
 pub use host::HostDevice;
 
 /// What a room says when it refuses, or the kit of what it found.
@@ -52,26 +53,22 @@ impl HostResource {
         Self { name, content, entry: entry.into(), exit: exit.into() }
     }
 
-    /// A buffer of `size` bytes, each 0xff, which the kit hands back.
-    pub fn results(
+    /// A buffer with its contents.
+    pub fn buffer(
         name: &'static str,
-        size: u64,
+        bytes: Vec<u8>,
         usage: vk::BufferUsageFlags,
         [entry, exit]: [Access; 2],
     ) -> Self {
         let copied = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
-        let content = Content::Buffer(BufferDesc { size, usage: usage | copied }, vec![0xff; size as usize]);
-        Self { name, content, entry: entry.into(), exit: exit.into() }
+        let desc = BufferDesc { size: bytes.len() as u64, usage: usage | copied };
+        Self { name, content: Content::Buffer(desc, bytes), entry: entry.into(), exit: exit.into() }
     }
-}
 
-/// A host's resource in a graph.
-#[derive(Clone, Copy)]
-pub enum Named {
-    /// A buffer.
-    Buffer(Handle<graph::Buffer>),
-    /// An image.
-    Image(Handle<graph::Image>),
+    /// A buffer of `size` bytes, each 0xff, which the kit hands back.
+    pub fn results(name: &'static str, size: u64, usage: vk::BufferUsageFlags, ends: [Access; 2]) -> Self {
+        Self::buffer(name, vec![0xff; size as usize], usage, ends)
+    }
 }
 
 /// A host's resource on the device.
@@ -83,6 +80,30 @@ pub enum Given {
     Image(Image),
 }
 
+impl Given {
+    /// The buffer that it is.
+    ///
+    /// # Errors
+    /// It is an image.
+    pub fn buffer(&self) -> Result<&Buffer, Refusal> {
+        match self {
+            Self::Buffer(buffer) => Ok(buffer),
+            Self::Image(image) => Err(format!("{} is no buffer", image.name()).into()),
+        }
+    }
+
+    /// The image that it is.
+    ///
+    /// # Errors
+    /// It is a buffer.
+    pub fn image(&self) -> Result<&Image, Refusal> {
+        match self {
+            Self::Image(image) => Ok(image),
+            Self::Buffer(buffer) => Err(format!("{} is no image", buffer.name()).into()),
+        }
+    }
+}
+
 /// A room as its host sees it. Lists of resources are all in the order of [`Room::resources`].
 pub trait Room {
     /// What it needs of the device.
@@ -91,17 +112,11 @@ pub trait Room {
     /// The host's resources that it uses.
     fn resources(&self) -> Vec<HostResource>;
 
-    /// Adds it to a graph; resources of its own go to `imports`.
+    /// Adds it to a graph.
     ///
     /// # Errors
     /// Whatever the room refuses.
-    fn add(
-        &mut self,
-        context: &Context,
-        graph: &mut Graph<Record>,
-        imports: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal>;
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal>;
 
     /// Prepares the road without a graph: for each resource the first and the last access, none for what it leaves
     /// alone.

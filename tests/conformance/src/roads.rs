@@ -1,6 +1,6 @@
 //! What is recorded around a room and by it: the host's own commands, our plan, or the host's own frame graph.
 
-use super::{Content, Given, HostResource, Named, Refusal, Room};
+use super::{Content, Declared, Given, HostResource, Named, Refusal, Room};
 use crate::plan::checked;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::vk;
@@ -72,7 +72,7 @@ pub(super) fn by_graph(
     };
     let named: Vec<_> = resources.iter().zip(given).map(name).collect();
     let context = recorder.context();
-    room.add(context, &mut graph, &mut imports, &named)?;
+    room.add(&mut Declared { context, graph: &mut graph, imports: &mut imports, host: &named })?;
     let plan = checked(graph, &context.graph_limits(), &Default::default())?;
     let mut execution = Execution::prepare(context, plan)?;
     // SAFETY: the recorder's command buffer is recording; the host brought every import to its entry state.

@@ -47,7 +47,7 @@ int main(int count, char **arguments) {
     view.eye[1] = eye_height, view.right[0] = 1, view.up[1] = 1, view.forward[2] = -1, view.phase[0] = 0.3;
     for (int i = 0; i < 4; i++) view.edges[i] = edges[i];
     for (int i = 0; i < 3; i++) view.extinction[i] = 0.06, view.albedo[i] = 0.9;
-    AirglowFogPrepared *prepared;
+    AirglowPrepared *prepared;
     check(airglow_fog_prepare(fog, width, height, &view, &prepared, &error));
     {
         const VkFormat hdr = VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -63,7 +63,7 @@ int main(int count, char **arguments) {
                                             target.binding(AIRGLOW_FOG_RESOURCE_TARGET)};
         AirglowAccess uses[3];  // one for each resource, in their order
         size_t use_count = 3;
-        check(airglow_fog_accesses(prepared, uses, &use_count, &error));
+        check(airglow_prepared_accesses(prepared, uses, &use_count, &error));
         const Readable texels(host.physical, host.device, 16 * width * height, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
         const Readable depths(host.physical, host.device, 4 * width * height, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
         const Readable picture(host.physical, host.device, 16 * width * height, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -72,14 +72,14 @@ int main(int count, char **arguments) {
             surface.bring(commands, uses[AIRGLOW_FOG_RESOURCE_SURFACE], &texels);
             depth.bring(commands, uses[AIRGLOW_FOG_RESOURCE_DEPTH], &depths);
             target.bring(commands, uses[AIRGLOW_FOG_RESOURCE_TARGET], nullptr);
-            check(airglow_fog_record(prepared, integer(commands), bindings, 3, &error));
+            check(airglow_prepared_record(prepared, integer(commands), bindings, 3, &error));
             target.read(commands, uses[AIRGLOW_FOG_RESOURCE_TARGET], picture);
         });
         const char *path = count > 1 ? arguments[1] : "fog.ppm";
         if (!write_picture(path, width, height, static_cast<float *>(picture.data))) return std::perror(path), 1;
-        check(airglow_fog_forget(prepared, &error));
+        check(airglow_prepared_forget(prepared, &error));
     }
-    airglow_fog_prepared_drop(prepared), airglow_fog_drop(fog), airglow_context_drop(context);
+    airglow_prepared_drop(prepared), airglow_fog_drop(fog), airglow_context_drop(context);
     airglow_requirements_drop(requirements);
     return 0;
 }

@@ -73,13 +73,13 @@ int main(int count, char **arguments) {
         const uint32_t usage = bytes.results_usage | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
         Readable colours(physical, device, bytes.results, usage);
         AirglowBinding binding = {};
-        binding.resource = AIRGLOW_RESOURCE_RESULTS, binding.buffer = integer(colours.buffer);
+        binding.resource = AIRGLOW_RELIGHT_RESOURCE_RESULTS, binding.buffer = integer(colours.buffer);
         binding.size = bytes.results, binding.usage = usage;
         AirglowAccess uses[32], results = {};  // the use to wait for; the first of each is waited for by the submission
         size_t use_count = 32;
         check(airglow_prepared_accesses(prepared, uses, &use_count, &error));
         for (size_t i = 0; i < use_count; i++)
-            if (uses[i].resource == AIRGLOW_RESOURCE_RESULTS) results = uses[i];
+            if (uses[i].resource == AIRGLOW_RELIGHT_RESOURCE_RESULTS) results = uses[i];
         submit(device, 0, [&](VkCommandBuffer commands) {
             check(airglow_prepared_record(prepared, integer(commands), &binding, 1, &error));
             VkMemoryBarrier2 barrier = {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, results.stage, results.access,

@@ -2,26 +2,31 @@
 //! layouts and state.
 
 use std::mem::zeroed;
-use std::ptr::{self, null, null_mut};
+use std::ptr::{null, null_mut};
 
-use airglow_conformance::{Given, HostDevice, HostResource, Named, Outputs, Refusal, Room, conform_on};
+use airglow_conformance::{Declared, Given, HostDevice, HostResource, Outputs, Refusal, Room, conform_on};
 use airglow_fog::{ACCESSES, Camera, Fog, Frame, Light, Medium, Phase, Settings, View};
-use airglow_gpu::ash::vk::{Format, Handle, ImageUsageFlags};
-use airglow_gpu::{Context, Image, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph::{Access, Graph, ImageDesc};
+use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
+use airglow_gpu::{Context, Options, Recorder, Requirements};
+use airglow_graph::{Access, ImageDesc};
 use airglow_math::World;
 use glam::DVec3;
 
-use crate::access::AirglowAccess;
-use crate::binding::AirglowBinding;
-use crate::conformance::{Checks, adopt, attempt, ends};
-use crate::context::{AirglowContext, airglow_context_drop};
-use crate::fog::prepared::*;
+use crate::access::Number;
+use crate::conformance::{Checks, attempt};
+use crate::fog::prepared::{AirglowFogResource, airglow_fog_prepare};
 use crate::fog::settings::AirglowFogSettings;
 use crate::fog::view::{AirglowFogLight, AirglowFogView};
 use crate::fog::{AirglowFog, airglow_fog_drop, airglow_fog_new, airglow_fog_require};
-use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+use crate::prepared::AirglowPrepared;
+use crate::through_c::{ThroughC, ends, record};
 
+/// What it uses, in the order of [`images`].
+pub(crate) const RESOURCES: [Number; 3] = [
+    (AirglowFogResource::Surface as u32, 0),
+    (AirglowFogResource::Depth as u32, 0),
+    (AirglowFogResource::Target as u32, 0),
+];
 pub(crate) const SIZE: [u32; 2] = [40, 24];
 const PIXELS: usize = (SIZE[0] * SIZE[1]) as usize;
 const EYE: [f64; 3] = [0.0, 1.7, 8.0];
@@ -69,6 +74,8 @@ pub(crate) fn view_in_c(lights: &[AirglowFogLight]) -> AirglowFogView {
         scale_height: 0.0,
         lights: lights.as_ptr(),
         light_count: lights.len(),
+        environment: null(),
+        environment_distance: 0.0,
     }
 }
 
@@ -79,61 +86,39 @@ pub(crate) fn settings() -> AirglowFogSettings {
     AirglowFogSettings { struct_size, ..unsafe { zeroed() } }
 }
 
-/// What the pass asks for.
-pub(crate) fn requirements(settings: &AirglowFogSettings) -> Result<*mut AirglowRequirements, Refusal> {
-    let mut requirements = null_mut();
-    attempt!(airglow_requirements_new, &raw mut requirements)?;
-    attempt!(airglow_fog_require, requirements, settings)?;
-    Ok(requirements)
-}
-
 /// The pass made by the exported functions.
-pub(crate) struct ThroughC {
-    pub context: *mut AirglowContext,
-    pub fog: *mut AirglowFog,
-    pub prepared: *mut AirglowFogPrepared,
+pub(crate) fn in_c(host: &HostDevice<'_>) -> Result<(ThroughC, *mut AirglowFog), Refusal> {
+    let settings = settings();
+    let settings = &raw const settings;
+    let mut through_c = ThroughC::adopt(host, |asked| attempt!(airglow_fog_require, asked, settings))?;
+    let context = through_c.context;
+    let fog = through_c.hold(airglow_fog_drop, |fog| attempt!(airglow_fog_new, context, settings, fog))?;
+    Ok((through_c, fog))
 }
 
-impl ThroughC {
-    pub(crate) fn new(host: &HostDevice<'_>) -> Result<Self, Refusal> {
-        let settings = settings();
-        let asked = requirements(&settings)?;
-        let adopted = adopt(host, asked);
-        // SAFETY: they were read by the call above alone.
-        unsafe { airglow_requirements_drop(asked) };
-        let mut made = Self { context: adopted?, fog: null_mut(), prepared: null_mut() };
-        attempt!(airglow_fog_new, made.context, &raw const settings, &raw mut made.fog)?;
-        Ok(made)
-    }
-
-    pub(crate) fn prepare(&mut self, view: &AirglowFogView) -> Result<(), Refusal> {
-        let [width, height] = SIZE;
-        attempt!(airglow_fog_prepare, self.fog, width, height, view, &raw mut self.prepared)
-    }
-}
-
-impl Drop for ThroughC {
-    fn drop(&mut self) {
-        // The context first: what was made from it may outlive it.
-        // SAFETY: they came from the functions above and are not used again.
-        unsafe {
-            airglow_context_drop(self.context);
-            airglow_fog_drop(self.fog);
-            airglow_fog_prepared_drop(self.prepared);
-        }
-    }
+/// A view prepared by the exported functions.
+pub(crate) fn prepare(
+    through_c: &mut ThroughC,
+    fog: *const AirglowFog,
+    view: &AirglowFogView,
+) -> Result<*mut AirglowPrepared, Refusal> {
+    let ([width, height], view) = (SIZE, &raw const *view);
+    through_c.prepare(|prepared| attempt!(airglow_fog_prepare, fog, width, height, view, prepared))
 }
 
 /// The pass twice: made by Rust, and made by the exported functions.
 pub(crate) struct Both {
     fog: Fog,
     through_c: ThroughC,
+    in_c: *mut AirglowFog,
+    prepared: *mut AirglowPrepared,
 }
 
 impl Both {
     pub(crate) fn new(context: &Context, host: &HostDevice<'_>) -> Result<Self, Refusal> {
         let fog = Fog::new(context, Settings::default())?;
-        Ok(Self { fog, through_c: ThroughC::new(host)? })
+        let (through_c, in_c) = in_c(host)?;
+        Ok(Self { fog, through_c, in_c, prepared: null_mut() })
     }
 }
 
@@ -144,19 +129,6 @@ pub(crate) fn images() -> [ImageDesc; 3] {
     let written = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
     let image = |(format, usage)| ImageDesc { usage, ..ImageDesc::new_2d(SIZE[0], SIZE[1], format) };
     [(hdr, sampled), (Format::D32_SFLOAT, depth), (hdr, written)].map(image)
-}
-
-/// An image of the host's as a binding.
-pub(crate) fn binding(resource: AirglowFogResource, image: &Image) -> AirglowBinding {
-    AirglowBinding {
-        resource: resource as u32,
-        image: image.raw().as_raw(),
-        format: image.desc().format.as_raw() as u32,
-        usage: image.desc().usage.as_raw(),
-        extent: SIZE,
-        // SAFETY: zero bytes are a valid binding.
-        ..unsafe { zeroed() }
-    }
 }
 
 impl Room for Both {
@@ -180,42 +152,19 @@ impl Room for Both {
         ]
     }
 
-    fn add(
-        &mut self,
-        _: &Context,
-        graph: &mut Graph<Record>,
-        _: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal> {
-        let [Named::Image(surface), Named::Image(depth), Named::Image(picture)] = *host else {
-            return Err("other resources".into());
-        };
-        self.fog.add(graph, &Frame { size: SIZE, surface, depth, target: Some(picture), view: view() })?;
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
+        let (surface, depth, target) = (to.image(0)?, to.image(1)?, Some(to.image(2)?));
+        self.fog.add(to.graph, &Frame { size: SIZE, surface, depth, target, view: view() })?;
         Ok(())
     }
 
     fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
-        self.through_c.prepare(&view_in_c(&[lamp()]))?;
-        let mut count = ACCESSES.len();
-        // SAFETY: zero bytes are a valid access.
-        let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
-        attempt!(
-            airglow_fog_accesses,
-            self.through_c.prepared,
-            uses.as_mut_ptr(),
-            ptr::from_mut(&mut count)
-        )?;
-        [0, 1, 2].into_iter().map(|resource| ends(&uses, resource)).collect()
+        self.prepared = prepare(&mut self.through_c, self.in_c, &view_in_c(&[lamp()]))?;
+        ends(self.prepared, &RESOURCES)
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        use AirglowFogResource::{Depth, Surface, Target};
-        let [Given::Image(surface), Given::Image(depth), Given::Image(picture)] = host else {
-            return Err("other resources".into());
-        };
-        let bindings = [binding(Surface, surface), binding(Depth, depth), binding(Target, picture)];
-        let (commands, prepared) = (recorder.command_buffer().as_raw(), self.through_c.prepared);
-        attempt!(airglow_fog_record, prepared, commands, bindings.as_ptr(), bindings.len())
+        record(self.prepared, recorder, RESOURCES.into_iter().zip(host))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Fog for hosts in C and C++: single scattering from lights inside a medium, in the host's own command buffer.
 
+pub mod background;
 #[cfg(any(test, feature = "conformance"))]
 pub(crate) mod conformance;
 pub mod plan;
@@ -15,9 +16,10 @@ use airglow_fog::{Fog, FogError};
 use airglow_gpu::Context;
 
 use crate::context::AirglowContext;
-use crate::input::{exclusive, shared, store, take, versioned};
+use crate::input::take;
+use crate::pass::{make, refusals, require};
 use crate::requirements::AirglowRequirements;
-use crate::status::{AirglowError, AirglowStatus, Failure, edge};
+use crate::status::{AirglowError, AirglowStatus, edge};
 use settings::AirglowFogSettings;
 
 /// The fog pass: its kernels for one context and one choice of settings. Any thread may use it.
@@ -26,15 +28,7 @@ pub struct AirglowFog {
     fog: Fog,
 }
 
-impl From<FogError> for Failure {
-    fn from(error: FogError) -> Self {
-        let message = error.to_string();
-        match error {
-            FogError::Gpu(error) => Self { message, ..Self::from(error) },
-            _ => Self::new(AirglowStatus::InvalidArgument, message),
-        }
-    }
-}
+refusals!(FogError);
 
 /// Adds what the pass asks of a device with these settings.
 ///
@@ -47,14 +41,7 @@ pub unsafe extern "C" fn airglow_fog_require(
     error: *mut AirglowError,
 ) -> AirglowStatus {
     // SAFETY: the caller vouches for the pointers.
-    unsafe {
-        edge(error, || {
-            let requirements = exclusive(requirements, "requirements")?;
-            let settings = versioned(settings, "settings")?.read()?;
-            requirements.add(&Fog::requirements(&settings));
-            Ok(())
-        })
-    }
+    unsafe { edge(error, || require(requirements, settings, Fog::requirements)) }
 }
 
 /// Makes the pass: its kernels.
@@ -71,10 +58,9 @@ pub unsafe extern "C" fn airglow_fog_new(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            store(fog, "fog", || {
-                let context = Arc::clone(&shared(context, "context")?.context);
-                let fog = Fog::new(&context, versioned(settings, "settings")?.read()?)?;
-                Ok(Box::into_raw(Box::new(AirglowFog { context, fog })))
+            make(context, settings, (fog, "fog"), |context, settings| {
+                let fog = Fog::new(&context, settings)?;
+                Ok(AirglowFog { context, fog })
             })
         })
     }

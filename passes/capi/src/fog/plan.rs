@@ -1,9 +1,9 @@
 //! What our graph makes of a view: its plan as text, as JSON or as a diagram.
 
-use airglow_fog::{ACCESSES, Frame};
+use airglow_fog::{ACCESSES, Fog, Frame};
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
-use airglow_graph::{Graph, ImageDesc, Plan};
+use airglow_graph::{Graph, ImageDesc};
 
 use super::AirglowFog;
 use super::view::AirglowFogView;
@@ -31,19 +31,16 @@ pub unsafe extern "C" fn airglow_fog_plan(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            let plan = plan(shared(fog, "fog")?, [width, height], &versioned(view, "view")?)?;
-            write_plan(&plan, format, text)
+            let AirglowFog { context, fog } = shared(fog, "fog")?;
+            let graph = graph(fog, [width, height], &versioned(view, "view")?)?;
+            write_plan(context, graph, format, text)
         })
     }
 }
 
 /// # Safety
 /// As [`AirglowFogView::read`].
-unsafe fn plan(
-    AirglowFog { context, fog }: &AirglowFog,
-    size: [u32; 2],
-    view: &AirglowFogView,
-) -> Result<Plan<Record>, Failure> {
+unsafe fn graph(fog: &Fog, size: [u32; 2], view: &AirglowFogView) -> Result<Graph<Record>, Failure> {
     // SAFETY: the caller's promise is ours.
     let view = unsafe { view.read(fog.settings().phase, Vec::new())? };
     let mut graph = Graph::<Record>::new();
@@ -55,6 +52,5 @@ unsafe fn plan(
         graph.import_image(&format!("{name} of the host"), desc, access, access)
     });
     fog.add(&mut graph, &Frame { size, surface, depth, target: Some(target), view })?;
-    let compiled = graph.compile(&context.graph_limits());
-    compiled.map_err(|error| Failure::argument("the view", &error.to_string()))
+    Ok(graph)
 }

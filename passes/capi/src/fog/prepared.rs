@@ -1,19 +1,18 @@
-//! A view as data, changed from frame to frame, and its commands in the host's own command buffer.
+//! A view as data, changed from frame to frame.
 
-use std::ffi::CString;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use airglow_fog::{ACCESSES, Bindings, Frame, Light, Pass, PhaseKind, Prepared};
-use airglow_gpu::ash::{vk, vk::Handle};
-use airglow_gpu::{Context, GpuError, Recorder};
+use airglow_fog::{ACCESSES, Bindings, Counts, Light, Pass, PhaseKind, Prepared};
+use airglow_gpu::Recorder;
 
 use super::AirglowFog;
 use super::view::AirglowFogView;
-use crate::access::{AirglowAccess, AirglowOrigin};
-use crate::binding::{AirglowBinding, Imported, Kept};
-use crate::input::{array, shared, store, take, versioned};
+use crate::access::{AirglowOrigin, Resource, Step, Uses, What};
+use crate::binding::Bound;
+use crate::input::{shared, store, versioned};
+use crate::pass::{Frame, give_if};
+use crate::prepared::AirglowPrepared;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
-use crate::text::write_array;
 
 /// What the pass uses; all are images of the host's.
 #[repr(u32)]
@@ -27,28 +26,60 @@ pub enum AirglowFogResource {
     Target = 2,
 }
 
-/// Lights of a view.
+/// Lights of a view, and pairs of a tile of the picture and a light.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct AirglowFogCounts {
-    /// Those whose airlight passes the bound somewhere in the picture.
+    /// Lights whose airlight passes the bound somewhere in the picture.
     pub evaluated: u32,
-    /// Those left out: dark, too weak, or out of reach of every pixel.
+    /// Lights left out: dark, too weak, or out of reach of every pixel.
     pub left_out: u32,
+    /// Pairs of a tile, `AIRGLOW_FOG_TILE` pixels on a side, and a light that is evaluated in it.
+    pub pairs: u32,
+    /// Pairs left out: with those evaluated, as many as there are tiles times lights.
+    pub pairs_left_out: u32,
 }
 
-/// A view of the pass, ready to be recorded, in as many frames as wanted. One thread at a time.
-pub struct AirglowFogPrepared {
-    context: Arc<Context>,
+/// Pixels along a side of a tile.
+pub const AIRGLOW_FOG_TILE: u32 = 64;
+
+const _: () = assert!(AIRGLOW_FOG_TILE == airglow_fog::TILE);
+
+/// A view of the pass.
+pub(super) struct FogFrame {
     pass: Pass,
     phase: PhaseKind,
     /// Memory for the lights of the next view.
     lights: Mutex<Vec<Light>>,
-    /// What it was recorded with.
-    kept: Mutex<Kept<Bindings>>,
-    /// Names that the host was given pointers to: of the resources, and of the step.
-    names: [CString; 3],
-    step: CString,
+}
+
+impl Frame for FogFrame {
+    const PASS: &'static str = "fog";
+    type Bindings = Bindings;
+
+    fn bind(&self, bound: &Bound<'_>) -> Result<Bindings, Failure> {
+        let image = |resource: AirglowFogResource| bound.image((resource as u32, 0));
+        Ok(Bindings {
+            surface: image(AirglowFogResource::Surface)?,
+            depth: image(AirglowFogResource::Depth)?,
+            target: image(AirglowFogResource::Target)?,
+        })
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, bindings: &mut Bindings) -> Result<(), Failure> {
+        Ok(self.pass.record(recorder, bindings)?)
+    }
+}
+
+/// Three images of the host's, in one step.
+fn uses() -> Uses {
+    let numbered = || (0..).zip(ACCESSES);
+    let resource = |(number, (name, _)): (u32, (&str, _))| {
+        let what = What::Image(AirglowOrigin::Host);
+        Resource { number: (number, 0), name: format!("fog {name}"), what }
+    };
+    let uses = numbered().map(|(number, (_, access))| ((number, 0), access)).collect();
+    Uses::new(numbered().map(resource).collect(), &[Step { name: "fog airlight", uses }])
 }
 
 /// Prepares a view of `width * height` pixels. `*prepared` gets null where the medium is clear: then there is nothing to
@@ -63,29 +94,21 @@ pub unsafe extern "C" fn airglow_fog_prepare(
     width: u32,
     height: u32,
     view: *const AirglowFogView,
-    prepared: *mut *mut AirglowFogPrepared,
+    prepared: *mut *mut AirglowPrepared,
     error: *mut AirglowError,
 ) -> AirglowStatus {
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            store(prepared, "prepared", || {
+            give_if(prepared, "prepared", || {
                 let AirglowFog { context, fog } = shared(fog, "fog")?;
                 let phase = fog.settings().phase;
                 let view = versioned(view, "view")?.read(phase, Vec::new())?;
-                let frame = Frame { size: [width, height], surface: (), depth: (), target: Some(()), view };
-                let Prepared::Pass(pass) = fog.prepare(&frame)? else { return Ok(std::ptr::null_mut()) };
-                // None of them has a nul within.
-                let text = |name: &str| CString::new(name).unwrap_or_default();
-                Ok(Box::into_raw(Box::new(AirglowFogPrepared {
-                    context: Arc::clone(context),
-                    pass,
-                    phase,
-                    lights: Mutex::new(frame.view.lights),
-                    kept: Mutex::default(),
-                    names: ACCESSES.map(|(name, _)| text(name)),
-                    step: text("fog airlight"),
-                })))
+                let size = [width, height];
+                let frame = airglow_fog::Frame { size, surface: (), depth: (), target: Some(()), view };
+                let Prepared::Pass(pass) = fog.prepare(&frame)? else { return Ok(None) };
+                let frame = FogFrame { pass, phase, lights: Mutex::new(frame.view.lights) };
+                Ok(Some(AirglowPrepared::new(context, uses(), frame)))
             })
         })
     }
@@ -99,7 +122,7 @@ pub unsafe extern "C" fn airglow_fog_prepare(
 /// As `airglow_fog_prepare`; `counts` is null or may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn airglow_fog_set(
-    prepared: *const AirglowFogPrepared,
+    prepared: *const AirglowPrepared,
     view: *const AirglowFogView,
     counts: *mut AirglowFogCounts,
     error: *mut AirglowError,
@@ -107,142 +130,17 @@ pub unsafe extern "C" fn airglow_fog_set(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            let prepared = shared(prepared, "prepared")?;
+            let frame: &FogFrame = shared(prepared, "prepared")?.of()?;
             let view = versioned(view, "view")?;
-            let mut lights = prepared.lights.lock().unwrap_or_else(PoisonError::into_inner);
-            let view = view.read(prepared.phase, std::mem::take(&mut *lights))?;
-            let set = prepared.pass.control.set(&view);
+            let mut lights = frame.lights.lock().unwrap_or_else(PoisonError::into_inner);
+            let view = view.read(frame.phase, std::mem::take(&mut *lights))?;
+            let set = frame.pass.control.set(&view);
             *lights = view.lights;
-            let (evaluated, left_out) = set.map(|counts| (counts.evaluated, counts.left_out))?;
+            let Counts { evaluated, left_out, pairs, pairs_left_out } = set?;
             if counts.is_null() {
                 return Ok(());
             }
-            store(counts, "counts", || Ok(AirglowFogCounts { evaluated, left_out }))
-        })
-    }
-}
-
-/// Lists the uses of the host's images: one step, which reads surface and depth and writes the target. The host brings
-/// each into that layout before, and waits for that use after. `*count` as with `airglow_prepared_accesses`.
-///
-/// # Safety
-/// `accesses` is null or has room for `*count` elements.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_fog_accesses(
-    prepared: *const AirglowFogPrepared,
-    accesses: *mut AirglowAccess,
-    count: *mut usize,
-    error: *mut AirglowError,
-) -> AirglowStatus {
-    // SAFETY: the caller vouches for the pointers.
-    unsafe { edge(error, || write_array(accesses, count, &shared(prepared, "prepared")?.accesses())) }
-}
-
-/// Records the pass into a command buffer of the host's: one rendering, without a barrier. Bound are the three resources.
-/// State of the command buffer that is changed: pipeline, descriptor set 0, vertex buffer 0, viewport 0 and scissor 0 of
-/// graphics. Rendering and labels are closed again.
-///
-/// The last few sets of bindings are kept: recorded again with one of them, a view allocates nothing on the heap. Images
-/// that were bound stay until `airglow_fog_forget` or until the prepared view is dropped.
-///
-/// # Safety
-/// As `airglow_prepared_record`: the command buffer records outside rendering, bindings describe live images truly, and
-/// these are in the layouts listed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_fog_record(
-    prepared: *const AirglowFogPrepared,
-    command_buffer: u64,
-    bindings: *const AirglowBinding,
-    binding_count: usize,
-    error: *mut AirglowError,
-) -> AirglowStatus {
-    // SAFETY: the caller vouches for pointers, handles and layouts.
-    unsafe {
-        edge(error, || {
-            let prepared = shared(prepared, "prepared")?;
-            if command_buffer == 0 {
-                return Err(Failure::argument("command_buffer", "it is null"));
-            }
-            let given = array(bindings, binding_count, "bindings")?;
-            let mut kept = prepared.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            let bound = kept.set(given, || prepared.import(given))?;
-            let mut recorder = Recorder::new(&prepared.context, vk::CommandBuffer::from_raw(command_buffer));
-            Ok(prepared.pass.record(&mut recorder, bound)?)
-        })
-    }
-}
-
-/// Forgets the images that the view was recorded with: before the host destroys one of them.
-///
-/// # Safety
-/// Nothing beyond the pointers being valid.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_fog_forget(
-    prepared: *const AirglowFogPrepared,
-    error: *mut AirglowError,
-) -> AirglowStatus {
-    // SAFETY: the caller vouches for the pointers.
-    unsafe {
-        edge(error, || {
-            shared(prepared, "prepared")?.kept.lock().unwrap_or_else(PoisonError::into_inner).forget();
-            Ok(())
-        })
-    }
-}
-
-/// Drops a prepared view. Null is nothing.
-///
-/// # Safety
-/// The pointer is not used again.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_fog_prepared_drop(prepared: *mut AirglowFogPrepared) {
-    // SAFETY: the caller vouches for the pointer.
-    unsafe { edge(std::ptr::null_mut(), || take(prepared)) };
-}
-
-impl AirglowFogPrepared {
-    fn accesses(&self) -> [AirglowAccess; 3] {
-        let row = |resource: usize| {
-            let (_, access) = ACCESSES[resource];
-            AirglowAccess {
-                resource: resource as u32,
-                index: 0,
-                origin: AirglowOrigin::Host as u32,
-                step: 0,
-                stage: access.stage().as_raw(),
-                access: access.access().as_raw(),
-                layout: access.layout().as_raw() as u32,
-                writes: u32::from(access.writes()),
-                name: self.names[resource].as_ptr(),
-                step_name: self.step.as_ptr(),
-            }
-        };
-        [0, 1, 2].map(row)
-    }
-
-    /// The host's images.
-    ///
-    /// # Safety
-    /// As [`airglow_fog_record`].
-    unsafe fn import(&self, given: &[AirglowBinding]) -> Result<Bindings, Failure> {
-        if let Some(other) = given.iter().find(|binding| binding.resource as usize >= ACCESSES.len()) {
-            let problem = format!("the view does not use resource {}; leave it out", other.resource);
-            return Err(Failure::argument("bindings", &problem));
-        }
-        let view = |resource: AirglowFogResource| {
-            let (name, _) = ACCESSES[resource as usize];
-            let wanted = |binding: &&AirglowBinding| binding.resource == resource as u32;
-            let binding = given.iter().find(wanted).ok_or_else(|| GpuError::misuse(name, "bind it"))?;
-            // SAFETY: the caller vouches for what the binding says.
-            match unsafe { binding.import(&self.context, name)? } {
-                Imported::Image(view) => Ok(view),
-                Imported::Buffer(_) => Err(Failure::from(GpuError::misuse(name, "give an image"))),
-            }
-        };
-        Ok(Bindings {
-            surface: view(AirglowFogResource::Surface)?,
-            depth: view(AirglowFogResource::Depth)?,
-            target: view(AirglowFogResource::Target)?,
+            store(counts, "counts", || Ok(AirglowFogCounts { evaluated, left_out, pairs, pairs_left_out }))
         })
     }
 }

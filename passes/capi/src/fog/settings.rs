@@ -4,6 +4,7 @@ use airglow_fog::{PhaseKind, Preset, Settings};
 use airglow_gpu::ash::vk;
 
 use crate::input::{Versioned, one_of};
+use crate::pass;
 use crate::status::Failure;
 
 /// How exactly the airlight is computed.
@@ -42,10 +43,10 @@ pub struct AirglowFogSettings {
     pub preset: u32,
     /// An `AirglowFogPhase`.
     pub phase: u32,
-    /// 1: a medium may thin with height.
+    /// 1: a medium may thin with height. Not with an environment.
     pub height: u32,
-    /// Not used; 0.
-    pub reserved: u32,
+    /// 1: views may have an environment behind the medium.
+    pub environment: u32,
     /// Radiance, W/sr/m2, below which the airlight of one light is left out of a pixel; 0 is 1e-4, below 0 nothing is left
     /// out.
     pub bound: f64,
@@ -56,9 +57,10 @@ unsafe impl Versioned for AirglowFogSettings {
     const OLDEST: usize = size_of::<Self>();
 }
 
-impl AirglowFogSettings {
-    /// The settings, checked.
-    pub(crate) fn read(&self) -> Result<Settings, Failure> {
+impl pass::Settings for AirglowFogSettings {
+    type Read = Settings;
+
+    fn read(&self) -> Result<Settings, Failure> {
         use PhaseKind::{Draine, HenyeyGreenstein, Isotropic, Polynomial};
         let default = Settings::default();
         let settings = Settings {
@@ -66,8 +68,8 @@ impl AirglowFogSettings {
             preset: one_of("preset", self.preset, &[Preset::Default, Preset::Reference])?,
             phase: one_of("phase", self.phase, &[HenyeyGreenstein, Isotropic, Polynomial, Draine])?,
             height: one_of("height", self.height, &[false, true])?,
+            environment: one_of("environment", self.environment, &[false, true])?,
             bound: if self.bound == 0.0 { default.bound } else { self.bound.max(0.0) },
-            ..default
         };
         settings.check()?;
         Ok(settings)

@@ -7,7 +7,7 @@ use airglow_gpu::ash::vk::{CommandBuffer, Handle};
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
 use airglow_gpu::{Image, Label, Options};
 use airglow_graph::State;
-use airglow_tests::conformance::conform_adopting;
+use airglow_tests::conformance::{Given, conform_adopting};
 use airglow_tests::device::{open, stated};
 use airglow_tests::heap::allocations;
 
@@ -17,8 +17,12 @@ use super::prepared::*;
 use super::settings::AirglowFogSettings;
 use super::view::AirglowFogView;
 use super::*;
+use crate::pass::Settings as _;
 use crate::plan::AirglowPlanFormat;
+use crate::prepared::*;
+use crate::status::AirglowStatus;
 use crate::testing::{call, refused, text, with_host};
+use crate::through_c::binding;
 
 #[test]
 fn rust_and_c_give_the_same_bits_under_validation() {
@@ -29,12 +33,11 @@ fn rust_and_c_give_the_same_bits_under_validation() {
 #[test]
 fn what_no_view_is_is_refused_and_changes_nothing() {
     with_host(&Fog::requirements(&settings().read().unwrap()), |host| {
-        let mut made = ThroughC::new(host).unwrap();
+        let (mut made, fog) = in_c(host).unwrap();
         let lamps = [lamp()];
         let good = view_in_c(&lamps);
-        made.prepare(&good).unwrap();
-        let ThroughC { fog, prepared, .. } = made;
-        let mut other: *mut AirglowFogPrepared = null_mut();
+        let prepared = prepare(&mut made, fog, &good).unwrap();
+        let mut other: *mut AirglowPrepared = null_mut();
         let dark = [lamp(); 65];
         let mut tilted = lamp();
         (tilted.cone_direction, tilted.cone_outer) = ([0.0, -1.0, 0.0], 2.0);
@@ -68,7 +71,7 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
         let mut none = null_mut();
         let said = refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
         assert!(said.contains("give 0 to 1"), "{said}");
-        refused!(InvalidArgument, airglow_fog_record, prepared, 0, null(), 0);
+        refused!(InvalidArgument, airglow_prepared_record, prepared, 0, null(), 0);
     });
 }
 
@@ -76,16 +79,15 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
 fn a_lamp_that_enters_allocates_nothing() {
     const WARM_UP: u32 = 10;
     let open = open(&Fog::requirements(&settings().read().unwrap()));
-    let mut made = ThroughC::new(&stated(&open, open.device())).unwrap();
+    let (mut made, fog) = in_c(&stated(&open, open.device())).unwrap();
     // SAFETY: dropped below, when the device is idle.
     let host = unsafe { open.adopt(1) }.unwrap();
     let images: [Image; 3] =
         images().map(|desc| host.create_image(Label::new("host", "image"), &desc).unwrap());
     let lamps = [lamp(); 2];
     let views = [view_in_c(&lamps), view_in_c(&lamps[..1]), view_in_c(&[])];
-    made.prepare(&views[0]).unwrap();
-    let bindings = [AirglowFogResource::Surface, AirglowFogResource::Depth, AirglowFogResource::Target];
-    let bindings = bindings.map(|resource| binding(resource, &images[resource as usize]));
+    let prepared = prepare(&mut made, fog, &views[0]).unwrap();
+    let bindings = RESOURCES.map(|number| binding(number, &Given::Image(images[number.0 as usize].clone())));
     let mut frames = FrameLoop::new(&open, &host).unwrap();
     let mut counted = 0;
     for frame in 0..4 * WARM_UP {
@@ -100,19 +102,22 @@ fn a_lamp_that_enters_allocates_nothing() {
             if frame > 0 {
                 call!(crate::context::airglow_context_begin_frame, made.context, u64::from(frame));
             }
-            let mut counts = AirglowFogCounts { evaluated: 9, left_out: 9 };
+            let mut counts = AirglowFogCounts { evaluated: 9, left_out: 9, pairs: 99, pairs_left_out: 99 };
             let (view, before) = (&raw const views[frame as usize % 3], allocations());
-            call!(airglow_fog_set, made.prepared, view, &raw mut counts);
-            call!(airglow_fog_record, made.prepared, commands.as_raw(), bindings.as_ptr(), bindings.len());
+            call!(airglow_fog_set, prepared, view, &raw mut counts);
+            call!(airglow_prepared_record, prepared, commands.as_raw(), bindings.as_ptr(), bindings.len());
             counted += if frame < WARM_UP { 0 } else { allocations() - before };
-            assert_eq!((counts.evaluated, counts.left_out), (2 - frame % 3, 0));
+            // One tile holds the picture.
+            let evaluated = 2 - frame % 3;
+            assert_eq!((counts.evaluated, counts.left_out), (evaluated, 0));
+            assert_eq!((counts.pairs, counts.pairs_left_out), (evaluated, 0));
             Ok::<_, airglow_gpu::GpuError>(())
         });
         recorded.unwrap();
     }
     frames.finish().unwrap();
     drop(frames);
-    call!(airglow_fog_forget, made.prepared);
+    call!(airglow_prepared_forget, prepared);
     assert_eq!(counted, 0, "allocations after warm-up");
     drop((made, images, host));
     assert!(open.messages().take().is_empty());

@@ -1,10 +1,12 @@
 //! A view through a medium, as a host says it.
 
-use airglow_fog::{Bounds, Camera, Cone, Light, Medium, Phase, PhaseKind, Thinning, View};
+use std::mem::offset_of;
+
+use airglow_fog::{Bounds, Camera, Cone, Environment, Light, Medium, Phase, PhaseKind, Thinning, View};
 use airglow_math::World;
 use glam::DVec3;
 
-use crate::input::{Versioned, array, versioned};
+use crate::input::{Versioned, array, shared, versioned};
 use crate::status::Failure;
 use crate::world::AirglowWorld;
 
@@ -69,27 +71,39 @@ pub struct AirglowFogView {
     pub lights: *const AirglowFogLight,
     /// How many.
     pub light_count: usize,
+    /// Radiance of what lies behind the scene, without the medium, W/sr/m2: red, green and blue of each of 9 coefficients
+    /// of spherical harmonics, in right-handed axes with +Y up. Null: darkness. Some needs `environment` in the settings.
+    pub environment: *const f64,
+    /// How far its light comes through the medium, in the host's units.
+    pub environment_distance: f64,
 }
 
 // SAFETY: `#[repr(C)]`, its size first, numbers and pointers; fields of 8 bytes are at multiples of 8.
 unsafe impl Versioned for AirglowFogView {
-    const OLDEST: usize = size_of::<Self>();
+    const OLDEST: usize = offset_of!(Self, environment);
 }
 
 impl AirglowFogView {
     /// The view, its lights in `lights`, which are cleared first; the pass checks the numbers.
     ///
     /// # Safety
-    /// `world` points at as many bytes as it says, `lights` at as many elements as stated.
+    /// `world` points at as many bytes as it says, `lights` at as many elements as stated, `environment` at 27 values.
     pub(super) unsafe fn read(&self, kind: PhaseKind, mut lights: Vec<Light>) -> Result<View, Failure> {
         let [eye, right, up, forward] = [self.eye, self.right, self.up, self.forward].map(DVec3::from_array);
         // SAFETY: the caller's promise is ours.
-        let (world, given) = unsafe {
+        let (world, given, environment) = unsafe {
             let world = match self.world.is_null() {
                 true => World::default(),
                 false => versioned(self.world, "view.world")?.read()?,
             };
-            (world, array(self.lights, self.light_count, "view.lights")?)
+            let environment = match self.environment.is_null() {
+                true => None,
+                false => {
+                    let radiance = *shared(self.environment.cast(), "view.environment")?;
+                    Some(Environment { distance: self.environment_distance, radiance })
+                }
+            };
+            (world, array(self.lights, self.light_count, "view.lights")?, environment)
         };
         lights.clear();
         lights.extend(given.iter().map(AirglowFogLight::read));
@@ -107,7 +121,7 @@ impl AirglowFogView {
             camera: Camera { position: eye, right, up, forward, edges: self.edges },
             medium: Medium { extinction: self.extinction, albedo: self.albedo, phase, thinning },
             lights,
-            environment: None,
+            environment,
         })
     }
 }

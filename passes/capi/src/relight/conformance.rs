@@ -4,31 +4,27 @@
 use std::mem::zeroed;
 use std::ptr;
 
-use airglow_conformance::{Given, HostDevice, HostResource, Named, Outputs, Refusal, Room, conform_on};
-use airglow_gpu::ash::vk::{BufferUsageFlags as Usage, Format, Handle, ImageUsageFlags};
-use airglow_gpu::{Context, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph::{Access, Graph, ImageDesc};
+use airglow_conformance::{Declared, Given, HostDevice, HostResource, Outputs, Refusal, Room, conform_on};
+use airglow_gpu::ash::vk::{BufferUsageFlags as Usage, Format, ImageUsageFlags};
+use airglow_gpu::{Context, Options, Recorder, Requirements};
+use airglow_graph::{Access, ImageDesc};
 use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight, Settings};
 use glam::DQuat;
 
-use crate::access::AirglowAccess;
-use crate::binding::AirglowBinding;
-use crate::conformance::{Checks, adopt, attempt, ends};
-use crate::context::{AirglowContext, airglow_context_drop};
+use crate::access::Number;
+use crate::conformance::{Checks, attempt};
+use crate::pass::Settings as _;
+use crate::prepared::{AirglowPrepared, airglow_prepared_make_scratch};
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
-use crate::relight::lists::airglow_prepared_accesses;
-use crate::relight::prepared::{
-    AirglowPrepared, airglow_prepared_drop, airglow_prepared_make_scratch, airglow_relight_prepare,
-};
-use crate::relight::record::airglow_prepared_record;
-use crate::relight::resources::AirglowResource;
+use crate::relight::prepared::airglow_relight_prepare;
+use crate::relight::resources::AirglowRelightResource;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::relight::{
     AirglowRelight, airglow_relight_add_mesh, airglow_relight_drop, airglow_relight_new,
     airglow_relight_require, airglow_relight_set_environment, airglow_relight_set_world,
 };
-use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
 use crate::status::Failure;
+use crate::through_c::{ThroughC, ends, record};
 use crate::world::{AirglowAxis, AirglowWorld};
 
 const WIDTH: u32 = 32;
@@ -49,12 +45,16 @@ fn sky() -> Vec<[f32; 3]> {
 /// Method, whether the library gets the sky as texels, the host's world.
 pub(crate) type Case<'a> = (u32, bool, Option<&'a AirglowWorld>);
 
+/// The host's resources that it uses.
+const RESOURCES: [Number; 2] =
+    [(AirglowRelightResource::Environment as u32, 0), (AirglowRelightResource::Results as u32, 0)];
+
 /// The pass twice: made by Rust, and made by the exported functions.
 pub(crate) struct Both {
     relight: Relight,
     mesh: MeshId,
-    context: *mut AirglowContext,
-    through_c: *mut AirglowRelight,
+    through_c: ThroughC,
+    in_c: *mut AirglowRelight,
     instance: AirglowRelightInstance,
     prepared: *mut AirglowPrepared,
     /// Whether the library gets the sky as texels, in place of the host's image.
@@ -71,37 +71,33 @@ impl Both {
         let vectors = numbers(16 * VERTICES as usize, 0.7);
         let mut relight = Relight::new(context, read(&settings)?)?;
         let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors))?;
-        let asked = requirements(&settings)?;
-        let adopted = adopt(host, asked);
-        // SAFETY: they were read by the call above alone.
-        unsafe { airglow_requirements_drop(asked) };
-        let (context, mut through_c) = (adopted?, ptr::null_mut());
-        attempt!(airglow_relight_new, context, &raw const settings, &raw mut through_c)?;
+        let (through_c, in_c) = in_c(host, &settings)?;
         // SAFETY: zero bytes are a valid instance.
         let mut instance: AirglowRelightInstance = unsafe { zeroed() };
         let (name, values, mesh_number) = (c"mesh".as_ptr(), vectors.as_ptr(), &raw mut instance.mesh);
-        attempt!(airglow_relight_add_mesh, through_c, name, VERTICES, values, vectors.len(), mesh_number)?;
+        attempt!(airglow_relight_add_mesh, in_c, name, VERTICES, values, vectors.len(), mesh_number)?;
         if let Some(world) = world {
             relight.set_world(world.read().map_err(said)?)?;
-            attempt!(airglow_relight_set_world, through_c, world)?;
+            attempt!(airglow_relight_set_world, in_c, world)?;
         }
         if texels {
-            attempt!(airglow_relight_set_environment, through_c, WIDTH, HEIGHT, sky().as_ptr().cast())?;
+            attempt!(airglow_relight_set_environment, in_c, WIDTH, HEIGHT, sky().as_ptr().cast())?;
         }
-        Ok(Self { relight, mesh, context, through_c, instance, prepared: ptr::null_mut(), texels })
+        Ok(Self { relight, mesh, through_c, in_c, instance, prepared: ptr::null_mut(), texels })
     }
 }
 
-impl Drop for Both {
-    fn drop(&mut self) {
-        // The context first: what was made from it may outlive it.
-        // SAFETY: they came from the functions above and are not used again.
-        unsafe {
-            airglow_context_drop(self.context);
-            airglow_relight_drop(self.through_c);
-            airglow_prepared_drop(self.prepared);
-        }
-    }
+/// The pass made by the exported functions.
+pub(crate) fn in_c(
+    host: &HostDevice<'_>,
+    settings: &AirglowRelightSettings,
+) -> Result<(ThroughC, *mut AirglowRelight), Refusal> {
+    let settings: *const _ = settings;
+    let mut through_c = ThroughC::adopt(host, |asked| attempt!(airglow_relight_require, asked, settings))?;
+    let context = through_c.context;
+    let relight = through_c
+        .hold(airglow_relight_drop, |relight| attempt!(airglow_relight_new, context, settings, relight))?;
+    Ok((through_c, relight))
 }
 
 impl Room for Both {
@@ -124,21 +120,13 @@ impl Room for Both {
         ]
     }
 
-    fn add(
-        &mut self,
-        context: &Context,
-        graph: &mut Graph<Record>,
-        imports: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal> {
-        let [Named::Image(image), Named::Buffer(results)] = *host else {
-            return Err("other resources".into());
-        };
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
+        let (image, results) = (to.image(0)?, to.buffer(1)?);
         let rotation = DQuat::from_array(ROTATION);
         let environment = Environment { image, width: WIDTH, height: HEIGHT, revision: 1, rotation };
         let light = Light::Environment(environment);
         let frame = Frame { light, instances: vec![Instance::new(self.mesh)], target: Some(results) };
-        self.relight.add(context, graph, imports, &frame)?;
+        self.relight.add(to.context, to.graph, to.imports, &frame)?;
         Ok(())
     }
 
@@ -154,43 +142,18 @@ impl Room for Both {
             environment_height: HEIGHT,
             environment_revision: 1,
         };
-        attempt!(airglow_relight_prepare, self.through_c, &raw const frame, &raw mut self.prepared)?;
+        let (relight, frame) = (self.in_c, &raw const frame);
+        self.prepared =
+            self.through_c.prepare(|prepared| attempt!(airglow_relight_prepare, relight, frame, prepared))?;
         attempt!(airglow_prepared_make_scratch, self.prepared)?;
-        let mut count = 0;
-        attempt!(airglow_prepared_accesses, self.prepared, ptr::null_mut(), &raw mut count)?;
-        // SAFETY: zero bytes are a valid access.
-        let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
-        attempt!(airglow_prepared_accesses, self.prepared, uses.as_mut_ptr(), &raw mut count)?;
-        let sky = ends(&uses, AirglowResource::Environment as u32)?.filter(|_| !self.texels);
-        Ok(vec![sky, ends(&uses, AirglowResource::Results as u32)?])
+        let mut ends = ends(self.prepared, &RESOURCES)?;
+        ends[0] = ends[0].filter(|_| !self.texels);
+        Ok(ends)
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        let [Given::Image(image), Given::Buffer(results)] = host else {
-            return Err("other resources".into());
-        };
-        // SAFETY: zero bytes are a valid binding.
-        let none = unsafe { zeroed::<AirglowBinding>() };
-        let mut bindings = vec![AirglowBinding {
-            resource: AirglowResource::Results as u32,
-            buffer: results.raw().as_raw(),
-            size: results.size(),
-            usage: results.desc().usage.as_raw(),
-            ..none
-        }];
-        if !self.texels {
-            bindings.push(AirglowBinding {
-                resource: AirglowResource::Environment as u32,
-                image: image.raw().as_raw(),
-                format: image.desc().format.as_raw() as u32,
-                usage: image.desc().usage.as_raw(),
-                extent: [WIDTH, HEIGHT],
-                ..none
-            });
-        }
-        let commands = recorder.command_buffer().as_raw();
-        attempt!(airglow_prepared_record, self.prepared, commands, bindings.as_ptr(), bindings.len())?;
-        Ok(())
+        let bound = RESOURCES.into_iter().zip(host).skip(usize::from(self.texels));
+        record(self.prepared, recorder, bound)
     }
 }
 
@@ -208,14 +171,6 @@ fn read(settings: &AirglowRelightSettings) -> Result<Settings, Refusal> {
 
 fn said(failure: Failure) -> Refusal {
     failure.message.into()
-}
-
-/// What the pass asks for.
-pub(crate) fn requirements(settings: &AirglowRelightSettings) -> Result<*mut AirglowRequirements, Refusal> {
-    let mut requirements = ptr::null_mut();
-    attempt!(airglow_requirements_new, &raw mut requirements)?;
-    attempt!(airglow_relight_require, requirements, settings)?;
-    Ok(requirements)
 }
 
 /// What the kit holds the pass to.

@@ -18,20 +18,20 @@ pub enum AirglowLight {
     None = 0,
     /// The environment given with `airglow_relight_set_environment`.
     Environment = 1,
-    /// An environment in an image of the host's, bound as `AIRGLOW_RESOURCE_ENVIRONMENT`.
+    /// An environment in an image of the host's, bound as `AIRGLOW_RELIGHT_RESOURCE_ENVIRONMENT`.
     EnvironmentImage = 2,
-    /// SH RGB in a buffer of the host's, bound as `AIRGLOW_RESOURCE_UNIFORM_LIGHT`: four floats a coefficient, the
+    /// SH RGB in a buffer of the host's, bound as `AIRGLOW_RELIGHT_RESOURCE_UNIFORM_LIGHT`: four floats a coefficient, the
     /// fourth unused.
     Uniform = 3,
     /// Each instance brings the light of its vertices; for `AIRGLOW_LIGHT_KIND_VERTEX`.
     Vertices = 4,
 }
 
-/// The instance brings light of each vertex, bound as `AIRGLOW_RESOURCE_VERTEX_LIGHT`.
+/// The instance brings light of each vertex, bound as `AIRGLOW_RELIGHT_RESOURCE_VERTEX_LIGHT`.
 pub const AIRGLOW_INPUT_LIGHT: u32 = 1;
-/// The instance brings dynamic visibility, bound as `AIRGLOW_RESOURCE_VISIBILITY`.
+/// The instance brings dynamic visibility, bound as `AIRGLOW_RELIGHT_RESOURCE_VISIBILITY`.
 pub const AIRGLOW_INPUT_VISIBILITY: u32 = 2;
-/// The instance brings normals, bound as `AIRGLOW_RESOURCE_NORMALS`.
+/// The instance brings normals, bound as `AIRGLOW_RELIGHT_RESOURCE_NORMALS`.
 pub const AIRGLOW_INPUT_NORMALS: u32 = 4;
 
 /// One appearance of a mesh. Elements of arrays never grow.

@@ -4,10 +4,8 @@
 #[cfg(any(test, feature = "conformance"))]
 pub(crate) mod conformance;
 pub mod frame;
-pub mod lists;
 pub mod plan;
 pub mod prepared;
-pub mod record;
 pub mod resources;
 pub mod settings;
 mod sky;
@@ -22,7 +20,8 @@ use airglow_gpu::{Context, GpuError};
 use airglow_relight::{MeshId, Relight, RelightError};
 
 use crate::context::AirglowContext;
-use crate::input::{array, exclusive, shared, store, string, take, versioned};
+use crate::input::{array, shared, store, string, take, versioned};
+use crate::pass::{make, refusals, require};
 use crate::requirements::AirglowRequirements;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 use crate::world::AirglowWorld;
@@ -58,15 +57,7 @@ impl State {
     }
 }
 
-impl From<RelightError> for Failure {
-    fn from(error: RelightError) -> Self {
-        let message = error.to_string();
-        match error {
-            RelightError::Gpu(error) => Self { message, ..Self::from(error) },
-            _ => Self::new(AirglowStatus::InvalidArgument, message),
-        }
-    }
-}
+refusals!(RelightError);
 
 /// Adds what the pass asks of a device with these settings.
 ///
@@ -79,14 +70,7 @@ pub unsafe extern "C" fn airglow_relight_require(
     error: *mut AirglowError,
 ) -> AirglowStatus {
     // SAFETY: the caller vouches for the pointers.
-    unsafe {
-        edge(error, || {
-            let requirements = exclusive(requirements, "requirements")?;
-            let settings = versioned(settings, "settings")?.read()?;
-            requirements.add(&Relight::requirements(&settings));
-            Ok(())
-        })
-    }
+    unsafe { edge(error, || require(requirements, settings, Relight::requirements)) }
 }
 
 /// Makes the pass: its kernels and tables.
@@ -103,11 +87,10 @@ pub unsafe extern "C" fn airglow_relight_new(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            store(relight, "relight", || {
-                let context = Arc::clone(&shared(context, "context")?.context);
-                let relight = Relight::new(&context, versioned(settings, "settings")?.read()?)?;
+            make(context, settings, (relight, "relight"), |context, settings| {
+                let relight = Relight::new(&context, settings)?;
                 let state = State { relight, meshes: BTreeMap::new(), next: 1, sky: None };
-                Ok(Box::into_raw(Box::new(AirglowRelight { context, state: Mutex::new(state) })))
+                Ok(AirglowRelight { context, state: Mutex::new(state) })
             })
         })
     }

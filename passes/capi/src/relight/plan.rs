@@ -1,15 +1,13 @@
 //! What our graph makes of a frame: its plan as text, as JSON or as a diagram.
 
-use std::sync::Arc;
-
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
 use airglow_gpu::{Imports, Record};
-use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, ImageDesc, Plan};
+use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, ImageDesc};
 use airglow_relight::{Environment, Frame, Instance, Light, Output, Resource};
 
 use super::AirglowRelight;
 use super::frame::{AirglowRelightFrame, read};
-use super::prepared::AirglowPrepared;
+use super::resources::host_bytes;
 use crate::input::{shared, versioned};
 use crate::plan::write_plan;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
@@ -33,28 +31,28 @@ pub unsafe extern "C" fn airglow_relight_plan(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            let plan = plan(shared(relight, "relight")?, &versioned(frame, "frame")?)?;
-            write_plan(&plan, format, text)
+            let relight = shared(relight, "relight")?;
+            write_plan(&relight.context, graph(relight, &versioned(frame, "frame")?)?, format, text)
         })
     }
 }
 
 /// # Safety
 /// The instances of `frame` are as many as it says.
-unsafe fn plan(relight: &AirglowRelight, frame: &AirglowRelightFrame) -> Result<Plan<Record>, Failure> {
+unsafe fn graph(relight: &AirglowRelight, frame: &AirglowRelightFrame) -> Result<Graph<Record>, Failure> {
     let state = &mut *relight.state();
     // SAFETY: the caller's promise is ours.
     let given = unsafe { read(state, frame)? };
     let prepared = state.relight.prepare(&relight.context, &given.frame)?;
     let settings = *state.relight.settings();
-    let prepared = AirglowPrepared::new(Arc::clone(&relight.context), prepared, &settings, given.sky.clone());
+    let coefficients = settings.coefficients() as u64;
     let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
     let mut import = |resource: Resource, access: Access| {
         let usage = BufferUsageFlags::STORAGE_BUFFER
             | BufferUsageFlags::UNIFORM_BUFFER
             | BufferUsageFlags::VERTEX_BUFFER
             | BufferUsageFlags::TRANSFER_DST;
-        let desc = BufferDesc { size: prepared.host_bytes(resource).max(1), usage };
+        let desc = BufferDesc { size: host_bytes(&prepared, coefficients, resource).max(1), usage };
         graph.import_buffer(&format!("{resource} of the host"), desc, access, access)
     };
     let mut instances = Vec::new();
@@ -74,7 +72,7 @@ unsafe fn plan(relight: &AirglowRelight, frame: &AirglowRelightFrame) -> Result<
         Output::Colour => Access::VertexBuffer,
         Output::Incident => Access::VertexStorageRead,
     };
-    let target = (!prepared.prepared.ranges.is_empty()).then(|| import(Resource::Results, read_by));
+    let target = (!prepared.ranges.is_empty()).then(|| import(Resource::Results, read_by));
     let light = match given.frame.light {
         Light::None => Light::None,
         Light::Vertices => Light::Vertices,
@@ -93,6 +91,5 @@ unsafe fn plan(relight: &AirglowRelight, frame: &AirglowRelightFrame) -> Result<
     };
     let frame = Frame { light, instances, target };
     state.relight.add(&relight.context, &mut graph, &mut imports, &frame)?;
-    let compiled = graph.compile(&relight.context.graph_limits());
-    compiled.map_err(|error| Failure::argument("the frame", &error.to_string()))
+    Ok(graph)
 }

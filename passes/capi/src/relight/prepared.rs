@@ -1,63 +1,50 @@
-//! A frame as data, made from what the host says of it.
+//! A frame as data, made from what the host says of it, and what changes it before it is recorded again.
 
-use std::ffi::CString;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use airglow_gpu::ash::vk::BufferUsageFlags;
-use airglow_gpu::{Context, Label, Location};
-use airglow_graph::{BufferDesc, ImageDesc, ResourceDesc};
-use airglow_relight::{Bindings, Need, Orientation, Prepared, Resource, Settings};
+use airglow_gpu::Recorder;
+use airglow_relight::{Bindings, Orientation, Prepared, Resource};
 
 use super::frame::{AirglowRelightFrame, AirglowRelightInstance, orientation, quaternion, read};
+use super::resources::{number, uses};
 use super::sky::Sky;
 use super::{AirglowRelight, misuse};
-use crate::binding::Kept;
-use crate::input::{array, exclusive, one_of, shared, store, take, versioned};
-use crate::status::{AirglowError, AirglowStatus, edge};
+use crate::binding::{Bound, Imported};
+use crate::input::{array, one_of, shared, versioned};
+use crate::pass::{Frame, give};
+use crate::prepared::AirglowPrepared;
+use crate::status::{AirglowError, AirglowStatus, Failure, edge};
+use crate::text::write_array;
 
-/// A frame of the pass, ready to be recorded, and again in later frames while meshes, light and sizes stay. One thread
-/// at a time.
-pub struct AirglowPrepared {
-    pub(super) context: Arc<Context>,
-    pub(super) prepared: Prepared,
-    /// Of a vector.
-    pub(super) coefficients: u64,
-    pub(super) sky: Option<Arc<Sky>>,
-    /// What the library made for the frame.
-    pub(super) scratch: Bindings,
-    /// What it was recorded with.
-    pub(super) kept: Mutex<Kept<Bindings>>,
-    /// Names that the host was given pointers to, by resource and by stage.
-    pub(super) names: Names,
+/// A frame of the pass.
+pub(super) struct RelightFrame {
+    prepared: Prepared,
+    sky: Option<Arc<Sky>>,
 }
 
-/// Texts with a nul at their end, in the order of the frame's needs and stages.
-pub(super) struct Names {
-    pub resources: Vec<CString>,
-    pub stages: Vec<CString>,
-}
+impl Frame for RelightFrame {
+    const PASS: &'static str = "relight";
+    type Bindings = Bindings;
 
-impl Names {
-    fn new(prepared: &Prepared) -> Self {
-        // None of them has a nul within.
-        let text = |name: String| CString::new(name).unwrap_or_default();
-        Self {
-            resources: prepared.needs.iter().map(|(resource, _)| text(resource.to_string())).collect(),
-            stages: prepared.stages.iter().map(|stage| text(stage.name.to_owned())).collect(),
+    fn bind(&self, bound: &Bound<'_>) -> Result<Bindings, Failure> {
+        let mut bindings = Bindings::default();
+        for (wanted, imported) in bound.all() {
+            let mut needs = self.prepared.needs.iter().map(|(resource, _)| *resource);
+            let Some(resource) = needs.find(|resource| number(*resource) == *wanted) else { continue };
+            match imported.clone() {
+                Imported::Image(view) => drop(bindings.images.insert(resource, view)),
+                Imported::Buffer(slice) => drop(bindings.buffers.insert(resource, slice)),
+            }
         }
+        Ok(bindings)
     }
-}
 
-impl AirglowPrepared {
-    pub(super) fn new(
-        context: Arc<Context>,
-        prepared: Prepared,
-        settings: &Settings,
-        sky: Option<Arc<Sky>>,
-    ) -> Self {
-        let (names, scratch) = (Names::new(&prepared), Bindings::default());
-        let coefficients = settings.coefficients() as u64;
-        Self { context, prepared, coefficients, sky, scratch, kept: Mutex::default(), names }
+    fn record(&self, recorder: &mut Recorder<'_>, bindings: &mut Bindings) -> Result<(), Failure> {
+        let needed = |wanted| self.prepared.needs.iter().any(|(resource, _)| *resource == wanted);
+        if let Some(sky) = self.sky.as_ref().filter(|_| needed(Resource::Environment)) {
+            bindings.images.insert(Resource::Environment, sky.bind(recorder)?);
+        }
+        Ok(self.prepared.record(recorder, bindings)?)
     }
 }
 
@@ -76,69 +63,58 @@ pub unsafe extern "C" fn airglow_relight_prepare(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            store(prepared, "prepared", || {
+            give(prepared, "prepared", || {
                 let relight = shared(relight, "relight")?;
-                let context = Arc::clone(&relight.context);
                 let state = &mut *relight.state();
                 let read = read(state, &versioned(frame, "frame")?)?;
-                let prepared = state.relight.prepare(&context, &read.frame)?;
-                let prepared = AirglowPrepared::new(context, prepared, state.relight.settings(), read.sky);
-                Ok(Box::into_raw(Box::new(prepared)))
+                let prepared = state.relight.prepare(&relight.context, &read.frame)?;
+                let coefficients = state.relight.settings().coefficients() as u64;
+                let uses = uses(&prepared, coefficients, read.sky.is_some());
+                Ok(AirglowPrepared::new(&relight.context, uses, RelightFrame { prepared, sky: read.sky }))
             })
         })
     }
 }
 
-/// Makes the scratch of a frame, charged to the pass in the context's memory, for hosts that would not place it
-/// themselves. Calling it again is nothing.
+/// Where the results of an instance lie in the buffer of results. Elements of arrays never grow.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct AirglowResultRange {
+    /// First byte: the offset of the instance's vertex buffer.
+    pub offset: u64,
+    /// Bytes.
+    pub size: u64,
+    /// Vertices.
+    pub vertex_count: u32,
+    /// Not used.
+    pub reserved: u32,
+}
+
+/// Lists where the results of each instance lie, in the order of the frame; none when the pass was left out. `*count` as
+/// with `airglow_prepared_accesses`.
 ///
 /// # Safety
-/// Nothing beyond the pointers being valid.
+/// `ranges` is null or has room for `*count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_prepared_make_scratch(
-    prepared: *mut AirglowPrepared,
+pub unsafe extern "C" fn airglow_relight_ranges(
+    prepared: *const AirglowPrepared,
+    ranges: *mut AirglowResultRange,
+    count: *mut usize,
     error: *mut AirglowError,
 ) -> AirglowStatus {
-    // SAFETY: the caller vouches for the pointer.
+    let row = |range: &airglow_relight::ResultRange| AirglowResultRange {
+        offset: range.offset,
+        size: range.size,
+        vertex_count: range.vertices,
+        reserved: 0,
+    };
+    // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            let frame = exclusive(prepared, "prepared")?;
-            let mut made = Bindings::default();
-            for (resource, need) in &frame.prepared.needs {
-                let Need::Scratch(desc) = need else { continue };
-                let name = resource.to_string();
-                let label = Label::new("relight", &name);
-                match desc {
-                    ResourceDesc::Buffer(desc) => {
-                        let usage = desc.usage | buffer_usage(&frame.prepared, *resource);
-                        let desc = BufferDesc { usage, ..*desc };
-                        let buffer = frame.context.create_buffer(label, &desc, Location::Device)?;
-                        made.buffers.insert(*resource, (&buffer).into());
-                    }
-                    ResourceDesc::Image(desc) => {
-                        let uses = uses(&frame.prepared, *resource);
-                        let usage = uses.fold(desc.usage, |usage, access| usage | access.image_usage());
-                        let image = frame.context.create_image(label, &ImageDesc { usage, ..*desc })?;
-                        made.images.insert(*resource, image.full_view()?);
-                    }
-                }
-            }
-            frame.scratch = made;
-            frame.kept().forget();
-            Ok(())
+            let frame: &RelightFrame = shared(prepared, "prepared")?.of()?;
+            write_array(ranges, count, &frame.prepared.ranges.iter().map(row).collect::<Vec<_>>())
         })
     }
-}
-
-/// The uses of a resource, in order.
-pub(super) fn uses(prepared: &Prepared, resource: Resource) -> impl Iterator<Item = airglow_graph::Access> {
-    let uses = prepared.stages.iter().flat_map(|stage| &stage.uses);
-    uses.filter(move |used| used.resource == resource).map(|used| used.access)
-}
-
-/// The usage that the frame asks of a buffer.
-pub(super) fn buffer_usage(prepared: &Prepared, resource: Resource) -> BufferUsageFlags {
-    uses(prepared, resource).fold(BufferUsageFlags::empty(), |usage, access| usage | access.buffer_usage())
 }
 
 /// Turns the light and the instances of a prepared frame, in the frame's order; it counts from the next recording on. Of
@@ -147,7 +123,7 @@ pub(super) fn buffer_usage(prepared: &Prepared, resource: Resource) -> BufferUsa
 /// # Safety
 /// `light_rotation` has four values; `instances` has `instance_count` elements.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_prepared_turn(
+pub unsafe extern "C" fn airglow_relight_turn(
     prepared: *const AirglowPrepared,
     light_rotation: *const f64,
     instances: *const AirglowRelightInstance,
@@ -161,7 +137,8 @@ pub unsafe extern "C" fn airglow_prepared_turn(
             let given = array(instances, instance_count, "instances")?;
             let turned: Vec<Orientation> =
                 given.iter().map(|given| orientation(given.rotation, given.inverted)).collect();
-            let Some(rotations) = &shared(prepared, "prepared")?.prepared.rotations else {
+            let frame: &RelightFrame = shared(prepared, "prepared")?.of()?;
+            let Some(rotations) = &frame.prepared.rotations else {
                 return Err(misuse(
                     "the frame",
                     "nothing in it turns: its light is given for each vertex, or none",
@@ -179,7 +156,7 @@ pub unsafe extern "C" fn airglow_prepared_turn(
 /// # Safety
 /// Nothing beyond the pointers being valid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_prepared_show(
+pub unsafe extern "C" fn airglow_relight_show(
     prepared: *const AirglowPrepared,
     instance: usize,
     shown: u32,
@@ -189,11 +166,11 @@ pub unsafe extern "C" fn airglow_prepared_show(
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
-            let all = &shared(prepared, "prepared")?.prepared.shown;
+            let frame: &RelightFrame = shared(prepared, "prepared")?.of()?;
             let (shown, shadowed) =
                 (one_of("shown", shown, &[false, true])?, one_of("shadowed", shadowed, &[false, true])?);
-            all.set(instance, shown)?;
-            Ok(all.set_shadowed(instance, shadowed)?)
+            frame.prepared.shown.set(instance, shown)?;
+            Ok(frame.prepared.shown.set_shadowed(instance, shadowed)?)
         })
     }
 }
@@ -204,7 +181,7 @@ pub unsafe extern "C" fn airglow_prepared_show(
 /// # Safety
 /// Nothing beyond the pointers being valid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_prepared_set_lit(
+pub unsafe extern "C" fn airglow_relight_set_lit(
     prepared: *const AirglowPrepared,
     lit: u32,
     error: *mut AirglowError,
@@ -213,18 +190,9 @@ pub unsafe extern "C" fn airglow_prepared_set_lit(
     unsafe {
         edge(error, || {
             let lit = one_of("lit", lit, &[false, true])?;
-            shared(prepared, "prepared")?.prepared.shown.set_lit(lit);
+            let frame: &RelightFrame = shared(prepared, "prepared")?.of()?;
+            frame.prepared.shown.set_lit(lit);
             Ok(())
         })
     }
-}
-
-/// Drops a prepared frame. Null is nothing.
-///
-/// # Safety
-/// The pointer is not used again.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn airglow_prepared_drop(prepared: *mut AirglowPrepared) {
-    // SAFETY: the caller vouches for the pointer.
-    unsafe { edge(std::ptr::null_mut(), || take(prepared)) };
 }

@@ -1,12 +1,14 @@
 //! The resources of a frame, by number.
 
-use airglow_relight::Resource;
+use airglow_relight::{Need, Prepared, Resource};
 
-/// What a step of the pass uses. With `AIRGLOW_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
+use crate::access::{self, AirglowOrigin, Number, Step, Uses, What};
+
+/// What a step of the pass uses. With `AIRGLOW_RELIGHT_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
 /// `..._VERTEX_LIGHT`, `..._VISIBILITY` and `..._NORMALS` an instance's in the frame; otherwise it is 0.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AirglowResource {
+pub enum AirglowRelightResource {
     /// The environment's image.
     Environment = 0,
     /// Integrals of the basis over the columns of the environment.
@@ -44,9 +46,9 @@ pub enum AirglowResource {
 }
 
 /// The number and the index of a resource.
-pub(super) fn number(resource: Resource) -> (AirglowResource, u32) {
-    use AirglowResource as R;
-    match resource {
+pub(super) fn number(resource: Resource) -> Number {
+    use AirglowRelightResource as R;
+    let (kind, index) = match resource {
         Resource::Environment => (R::Environment, 0),
         Resource::ColumnTable => (R::ColumnTable, 0),
         Resource::RowTable => (R::RowTable, 0),
@@ -64,5 +66,42 @@ pub(super) fn number(resource: Resource) -> (AirglowResource, u32) {
         Resource::Normals(instance) => (R::Normals, instance),
         Resource::Rectangle => (R::Rectangle, 0),
         Resource::Results => (R::Results, 0),
+    };
+    (kind as u32, index)
+}
+
+/// What a frame uses. `texels`: its environment is the library's own.
+pub(super) fn uses(prepared: &Prepared, coefficients: u64, texels: bool) -> Uses {
+    let resource = |(resource, need): &(Resource, Need)| {
+        let what = match (resource, need) {
+            (Resource::Environment, _) if texels => What::Image(AirglowOrigin::Library),
+            (Resource::Environment, _) => What::Image(AirglowOrigin::Host),
+            (_, Need::Ours { buffer, .. }) => What::Buffer(AirglowOrigin::Library, buffer.size()),
+            (_, Need::Host) => {
+                What::Buffer(AirglowOrigin::Host, host_bytes(prepared, coefficients, *resource))
+            }
+            (_, Need::Scratch(desc)) => What::Scratch(*desc),
+        };
+        access::Resource { number: number(*resource), name: resource.to_string(), what }
+    };
+    let resources = prepared.needs.iter().map(resource).collect();
+    let steps = prepared.stages.iter().map(|stage| {
+        let uses = stage.uses.iter().map(|used| (number(used.resource), used.access)).collect();
+        Step { name: stage.name, uses }
+    });
+    Uses::new(resources, &steps.collect::<Vec<_>>())
+}
+
+/// Bytes that a buffer of the host's must have.
+pub(super) fn host_bytes(prepared: &Prepared, coefficients: u64, resource: Resource) -> u64 {
+    let vertices =
+        |instance: u32| prepared.ranges.get(instance as usize).map_or(0, |range| u64::from(range.vertices));
+    match resource {
+        Resource::Results => prepared.ranges.last().map_or(0, |range| range.offset + range.size),
+        Resource::UniformLight => 16 * coefficients,
+        Resource::VertexLight(instance) => 12 * coefficients * vertices(instance),
+        Resource::Visibility(instance) => 4 * coefficients * vertices(instance),
+        Resource::Normals(instance) => 12 * vertices(instance),
+        _ => 0,
     }
 }

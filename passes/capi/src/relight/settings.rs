@@ -4,6 +4,7 @@ use airglow_gpu::ash::vk;
 use airglow_relight::{LightKind, Method, Output, Settings, Storage};
 
 use crate::input::{Versioned, one_of, store, versioned};
+use crate::pass::{self, Settings as _};
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 
 /// How the vectors of a mesh are stored on the device.
@@ -73,9 +74,10 @@ unsafe impl Versioned for AirglowRelightSettings {
     const OLDEST: usize = 8;
 }
 
-impl AirglowRelightSettings {
-    /// The settings, checked.
-    pub(crate) fn read(&self) -> Result<Settings, Failure> {
+impl pass::Settings for AirglowRelightSettings {
+    type Read = Settings;
+
+    fn read(&self) -> Result<Settings, Failure> {
         let settings = Settings {
             order: if self.order == 0 { Settings::default().order } else { self.order as usize },
             storage: one_of("storage", self.storage, &[Storage::F32, Storage::F16])?,

@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+use airglow_capi::fog::background::*;
 use airglow_capi::fog::prepared::*;
 use airglow_capi::fog::settings::*;
 use airglow_capi::fog::view::*;
@@ -11,7 +12,14 @@ use common::{ROOM, assert_sizes, build, host, linked, picture};
 
 #[test]
 fn structures_measure_what_rust_s_do() {
-    let sizes = sizes![AirglowFogCounts, AirglowFogLight, AirglowFogSettings, AirglowFogView];
+    let sizes = sizes![
+        AirglowFogBackgroundSettings,
+        AirglowFogBackgroundView,
+        AirglowFogCounts,
+        AirglowFogLight,
+        AirglowFogSettings,
+        AirglowFogView,
+    ];
     assert_sizes("fog_sizes.c", &sizes);
 }
 

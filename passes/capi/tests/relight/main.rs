@@ -7,7 +7,7 @@ mod common;
 use airglow_capi::access::*;
 use airglow_capi::binding::*;
 use airglow_capi::relight::frame::*;
-use airglow_capi::relight::lists::*;
+use airglow_capi::relight::prepared::*;
 use airglow_capi::relight::settings::*;
 use common::{ROOM, assert_sizes, build, host, linked, picture};
 

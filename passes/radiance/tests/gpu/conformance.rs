@@ -1,10 +1,10 @@
 //! This room inside a host with a device of its own, by both roads.
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
-use airglow_gpu::{Buffer, Context, Imports, Options, Record, Recorder, Requirements};
-use airglow_graph::{Access, Graph, PassKind};
+use airglow_gpu::{Context, Options, Recorder, Requirements};
+use airglow_graph::Access;
 use airglow_radiance::{Bindings, Lights, Part, PassSettings, Prepared, Radiance, Receiver, Resource};
-use airglow_tests::conformance::{Given, HostResource, Named, Refusal, Room, conform};
+use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
 use glam::DMat3;
 
 use crate::receivers::Mesh;
@@ -48,25 +48,10 @@ impl Room for Lit {
         NAMES.into_iter().zip(self.sizes.iter().copied()).map(results).collect()
     }
 
-    fn add(
-        &mut self,
-        _: &Context,
-        graph: &mut Graph<Record>,
-        imports: &mut Imports,
-        host: &[Named],
-    ) -> Result<(), Refusal> {
+    fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
         let lights = Lights { emitters: &blocks(), distant: &[] };
-        let lit = self.radiance.add(graph, imports, &self.receiver, &lights)?;
-        for (light, host) in lit.light.into_iter().zip(host) {
-            let Named::Buffer(kept) = host else { return Err("other resources".into()) };
-            let mut pass = graph.pass("copy", PassKind::Transfer);
-            pass.read(&light, Access::TransferSource);
-            let kept = pass.write(*kept, Access::TransferDestination);
-            pass.record(Box::new(move |recorder, resources| {
-                recorder.copy_buffer(resources.buffer(&light)?, resources.buffer(&kept)?)
-            }));
-        }
-        Ok(())
+        let lit = self.radiance.add(to.graph, to.imports, &self.receiver, &lights)?;
+        (0..).zip(lit.light).try_for_each(|(place, light)| to.keep(light, place))
     }
 
     fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
@@ -83,11 +68,9 @@ impl Room for Lit {
     }
 
     fn record(&mut self, recorder: &mut Recorder<'_>, host: &[Given]) -> Result<(), Refusal> {
-        let [Given::Buffer(first), Given::Buffer(second)] = host else {
-            return Err("other resources".into());
-        };
-        let given = |(part, buffer): (u32, &Buffer)| (part, buffer.into());
-        let bindings: Bindings = [(0, first), (1, second)].into_iter().map(given).collect();
+        let given =
+            |(part, given): (u32, &Given)| -> Result<_, Refusal> { Ok((part, given.buffer()?.into())) };
+        let bindings = (0..).zip(host).map(given).collect::<Result<Bindings, Refusal>>()?;
         let prepared = self.prepared.as_ref().ok_or("not prepared")?;
         Ok(prepared.record(recorder, &bindings)?)
     }

@@ -5,6 +5,7 @@ use airglow_relight::Relight;
 use airglow_tests::conformance::{HostDevice, Outputs, conform_adopting};
 
 use super::settings;
+use crate::pass::Settings as _;
 use crate::relight::conformance::{Both, Case, check_written, z_up};
 
 fn outputs(case: Case<'_>) -> Outputs {

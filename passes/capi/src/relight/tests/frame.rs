@@ -6,25 +6,24 @@ use std::ptr::{null, null_mut};
 
 use airglow_gpu::ash::vk;
 
-use super::{adopt, call, refused, settings, text, with_host};
+use super::{call, in_c, refused, settings, text, with_host};
 use crate::access::AirglowOrigin;
+use crate::access::AirglowResourceInfo;
 use crate::context::*;
 use crate::plan::AirglowPlanFormat;
+use crate::prepared::*;
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
-use crate::relight::lists::*;
 use crate::relight::plan::airglow_relight_plan;
 use crate::relight::prepared::*;
-use crate::relight::record::airglow_prepared_record;
-use crate::relight::resources::AirglowResource;
+use crate::relight::resources::AirglowRelightResource;
 use crate::relight::*;
 use crate::status::AirglowStatus;
 
 #[test]
 fn a_frame_is_data_before_anything_is_made() {
     with_host(|host| {
-        let (chosen, mut relight, mut prepared) = (settings(0), null_mut(), null_mut());
-        let context = adopt(host, &chosen);
-        call!(airglow_relight_new, context, &raw const chosen, &raw mut relight);
+        let mut prepared = null_mut();
+        let (made, relight) = in_c(host, &settings(0)).unwrap();
         // SAFETY: zero bytes are a valid instance and a valid frame.
         let (mut instances, mut frame): ([AirglowRelightInstance; 2], AirglowRelightFrame) =
             unsafe { zeroed() };
@@ -58,7 +57,7 @@ fn a_frame_is_data_before_anything_is_made() {
             unsafe { zeroed() };
         let mut count = rows.len();
         call!(airglow_prepared_resources, prepared, rows.as_mut_ptr(), &raw mut count);
-        let results = AirglowResource::Results as u32;
+        let results = AirglowRelightResource::Results as u32;
         let row = rows[..count].iter().find(|row| row.resource == results).unwrap();
         // The second instance begins at a multiple of 64 vertices.
         assert_eq!((row.bytes, row.origin, row.is_image), (16 * 74, AirglowOrigin::Host as u32, 0));
@@ -66,26 +65,23 @@ fn a_frame_is_data_before_anything_is_made() {
         // SAFETY: names live as long as the prepared frame.
         assert_eq!(unsafe { CStr::from_ptr(row.name) }, c"relight results");
         count = ranges.len();
-        call!(airglow_prepared_ranges, prepared, ranges.as_mut_ptr(), &raw mut count);
+        call!(airglow_relight_ranges, prepared, ranges.as_mut_ptr(), &raw mut count);
         assert_eq!((ranges[0].size, ranges[1].offset, ranges[1].vertex_count), (160, 1024, 10));
         let light = [0.0, 0.0, 1.0, 1.0];
-        call!(airglow_prepared_turn, prepared, light.as_ptr(), instances.as_ptr(), 2);
-        refused!(InvalidArgument, airglow_prepared_turn, prepared, light.as_ptr(), instances.as_ptr(), 1);
-        call!(airglow_prepared_show, prepared, 1, 0, 0);
-        call!(airglow_prepared_set_lit, prepared, 0);
-        refused!(InvalidArgument, airglow_prepared_show, prepared, 2, 1, 1);
-        refused!(InvalidArgument, airglow_prepared_show, prepared, 1, 2, 1);
-        refused!(InvalidArgument, airglow_prepared_set_lit, prepared, 2);
+        call!(airglow_relight_turn, prepared, light.as_ptr(), instances.as_ptr(), 2);
+        refused!(InvalidArgument, airglow_relight_turn, prepared, light.as_ptr(), instances.as_ptr(), 1);
+        call!(airglow_relight_show, prepared, 1, 0, 0);
+        call!(airglow_relight_set_lit, prepared, 0);
+        refused!(InvalidArgument, airglow_relight_show, prepared, 2, 1, 1);
+        refused!(InvalidArgument, airglow_relight_show, prepared, 1, 2, 1);
+        refused!(InvalidArgument, airglow_relight_set_lit, prepared, 2);
         refused!(InvalidArgument, airglow_prepared_record, prepared, 0, null(), 0);
-        let memory = text(|text| call!(airglow_context_memory_json, context, text));
+        let memory = text(|text| call!(airglow_context_memory_json, made.context, text));
         assert!(memory.contains("\"owner\":\"relight\""), "{memory}");
         call!(airglow_relight_drop_mesh, relight, instances[0].mesh);
         refused!(InvalidArgument, airglow_relight_drop_mesh, relight, instances[0].mesh);
-        // SAFETY: they are not used again; nothing was submitted.
-        unsafe {
-            airglow_prepared_drop(prepared);
-            airglow_context_drop(context);
-            airglow_relight_drop(relight);
-        }
+        drop(made);
+        // SAFETY: it is not used again; nothing was submitted.
+        unsafe { airglow_prepared_drop(prepared) };
     });
 }

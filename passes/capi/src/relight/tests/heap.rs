@@ -5,41 +5,34 @@ use std::ptr::{null, null_mut};
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, CommandBuffer, Handle};
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
-use airglow_gpu::{Buffer, Label, Location};
+use airglow_gpu::{Label, Location};
 use airglow_graph::BufferDesc;
 use airglow_relight::Relight;
+use airglow_tests::conformance::Given;
 use airglow_tests::device::{open, stated};
 use airglow_tests::heap::allocations;
 
-use super::{adopt, call, settings};
-use crate::binding::AirglowBinding;
+use super::{call, in_c, settings};
 use crate::context::*;
+use crate::prepared::*;
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
 use crate::relight::prepared::*;
-use crate::relight::record::*;
-use crate::relight::resources::AirglowResource;
+use crate::relight::resources::AirglowRelightResource;
 use crate::relight::*;
+use crate::through_c::binding;
 
 /// Warm-up, and frames that count.
 const FRAMES: [u64; 2] = [10, 30];
 const VERTICES: u32 = 100;
 
-fn binding(buffer: &Buffer) -> AirglowBinding {
-    // SAFETY: zero bytes are a valid binding.
-    let none = unsafe { zeroed::<AirglowBinding>() };
-    let (resource, usage) = (AirglowResource::Results as u32, buffer.desc().usage.as_raw());
-    AirglowBinding { resource, buffer: buffer.raw().as_raw(), size: buffer.size(), usage, ..none }
-}
-
 #[test]
 fn a_frame_recorded_again_allocates_nothing() {
     let chosen = settings(0);
-    let open = open(&Relight::requirements(&chosen.read().unwrap()));
-    let context = adopt(&stated(&open, open.device()), &chosen);
+    let open = open(&Relight::requirements(&crate::pass::Settings::read(&chosen).unwrap()));
+    let (made, relight) = in_c(&stated(&open, open.device()), &chosen).unwrap();
     // SAFETY: dropped below, when the device is idle.
     let host = unsafe { open.adopt(1) }.unwrap();
-    let (mut relight, mut prepared) = (null_mut(), null_mut());
-    call!(airglow_relight_new, context, &raw const chosen, &raw mut relight);
+    let mut prepared = null_mut();
     // SAFETY: zero bytes are a valid instance and a valid frame.
     let (mut instance, mut frame): (AirglowRelightInstance, AirglowRelightFrame) = unsafe { zeroed() };
     let vectors = vec![0.5f32; 16 * VERTICES as usize];
@@ -55,14 +48,15 @@ fn a_frame_recorded_again_allocates_nothing() {
     let desc = BufferDesc { size: 16 * u64::from(VERTICES), usage: BufferUsageFlags::STORAGE_BUFFER };
     let buffers =
         [0, 1].map(|_| host.create_buffer(Label::new("host", "results"), &desc, Location::Device).unwrap());
-    let bindings = buffers.each_ref().map(binding);
+    let results = (AirglowRelightResource::Results as u32, 0);
+    let bindings = buffers.each_ref().map(|buffer| binding(results, &Given::Buffer(buffer.clone())));
     let mut counted = [0, 0];
     let mut frames = FrameLoop::new(&open, &host).unwrap();
     let [warm_up, measured] = FRAMES;
     for frame in 0..warm_up + measured {
         let recorded = frames.frame(FrameSemaphores::default(), |commands: CommandBuffer| {
             if frame > 0 {
-                call!(airglow_context_begin_frame, context, frame);
+                call!(airglow_context_begin_frame, made.context, frame);
             }
             let (bound, commands) = (&raw const bindings[frame as usize % 2], commands.as_raw());
             let before = allocations();
@@ -78,13 +72,9 @@ fn a_frame_recorded_again_allocates_nothing() {
     assert!(warming_up > 0, "the counter is dead: the first frames import");
     assert_eq!(after, 0, "heap allocations in {measured} frames");
     call!(airglow_prepared_forget, prepared);
-    drop((buffers, host));
-    // SAFETY: they are not used again; all work is done.
-    unsafe {
-        airglow_prepared_drop(prepared);
-        airglow_relight_drop(relight);
-        airglow_context_drop(context);
-    }
+    drop((buffers, host, made));
+    // SAFETY: it is not used again; all work is done.
+    unsafe { airglow_prepared_drop(prepared) };
     let said = open.messages().take();
     assert!(said.is_empty(), "{said:?}");
 }

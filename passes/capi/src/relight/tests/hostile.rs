@@ -13,11 +13,10 @@ use crate::context::*;
 use crate::input::{array, versioned};
 use crate::needs::AirglowNeed;
 use crate::physical::AirglowPhysicalDevice;
+use crate::prepared::*;
 use crate::relight::frame::AirglowRelightFrame;
-use crate::relight::lists::*;
 use crate::relight::plan::airglow_relight_plan;
 use crate::relight::prepared::*;
-use crate::relight::record::{airglow_prepared_forget, airglow_prepared_record};
 use crate::relight::settings::{AirglowRelightBytes, AirglowRelightSettings, airglow_relight_bytes};
 use crate::relight::*;
 use crate::requirements::*;
@@ -50,12 +49,12 @@ fn null_is_refused_everywhere_and_dropping_it_is_nothing() {
     refused!(InvalidArgument, airglow_prepared_forget, null());
     refused!(InvalidArgument, airglow_relight_set_world, null(), null());
     refused!(InvalidArgument, airglow_world_check, null());
-    refused!(InvalidArgument, airglow_prepared_show, null(), 0, 1, 1);
-    refused!(InvalidArgument, airglow_prepared_set_lit, null(), 1);
-    refused!(InvalidArgument, airglow_prepared_turn, null(), null(), null(), 0);
+    refused!(InvalidArgument, airglow_relight_show, null(), 0, 1, 1);
+    refused!(InvalidArgument, airglow_relight_set_lit, null(), 1);
+    refused!(InvalidArgument, airglow_relight_turn, null(), null(), null(), 0);
     refused!(InvalidArgument, airglow_prepared_accesses, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_prepared_resources, null(), null_mut(), null_mut());
-    refused!(InvalidArgument, airglow_prepared_ranges, null(), null_mut(), null_mut());
+    refused!(InvalidArgument, airglow_relight_ranges, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_prepared_record, null(), 0, null(), 0);
     // SAFETY: null is nothing; an error may be null.
     unsafe {
@@ -177,7 +176,7 @@ fn a_bake_of_nonsense_is_refused() {
 
 #[test]
 fn a_device_that_lacks_something_and_texts_that_do_not_fit() {
-    with_host(|host| lacking(host, requirements(&settings(0)).unwrap()));
+    with_host(|host| lacking(host, requirements(&settings(0))));
 }
 
 fn lacking(host: &HostDevice<'_>, asked: *mut AirglowRequirements) {

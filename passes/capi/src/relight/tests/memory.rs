@@ -73,7 +73,7 @@ fn the_host_gives_memory_or_none_and_gets_all_of_it_back() {
                 allocate: Some(allocate),
                 free: Some(free),
             };
-            let asked = requirements(&chosen).unwrap();
+            let asked = requirements(&chosen);
             let names =
                 [c"synchronization2".as_ptr(), c"dynamicRendering".as_ptr(), c"noSuchFeature".as_ptr()];
             let info = AirglowAdoptInfo {

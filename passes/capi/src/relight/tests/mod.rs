@@ -6,13 +6,16 @@ mod heap;
 mod hostile;
 mod memory;
 
+use std::ptr::null_mut;
+
 use airglow_tests::conformance::HostDevice;
 
-use super::conformance::{requirements, settings};
+use super::airglow_relight_require;
+use super::conformance::{in_c, settings};
 use crate::conformance::adopt_info;
-use crate::context::AirglowContext;
+use crate::pass::Settings as _;
 use crate::relight::settings::AirglowRelightSettings;
-use crate::requirements::airglow_requirements_drop;
+use crate::requirements::{AirglowRequirements, airglow_requirements_new};
 use crate::testing::{call, refused, text};
 
 /// Runs `test` with a host's device.
@@ -21,11 +24,10 @@ fn with_host(test: impl FnOnce(&HostDevice<'_>)) {
     crate::testing::with_host(&asked, test);
 }
 
-/// Adopts a host's device for the pass.
-fn adopt(host: &HostDevice<'_>, settings: &AirglowRelightSettings) -> *mut AirglowContext {
-    let asked = requirements(settings).unwrap();
-    let context = crate::conformance::adopt(host, asked).unwrap();
-    // SAFETY: they were read by the call above alone.
-    unsafe { airglow_requirements_drop(asked) };
-    context
+/// What the pass asks for.
+fn requirements(settings: &AirglowRelightSettings) -> *mut AirglowRequirements {
+    let mut requirements = null_mut();
+    call!(airglow_requirements_new, &raw mut requirements);
+    call!(airglow_relight_require, requirements, settings);
+    requirements
 }

@@ -1,0 +1,138 @@
+//! Passes made by the exported functions, as the conformance kit and the tests use them.
+#![allow(dead_code, reason = "helpers of passes, of which there may be none")]
+
+use std::mem::zeroed;
+use std::ptr::null_mut;
+
+use airglow_conformance::{Given, HostDevice, Refusal};
+use airglow_gpu::Recorder;
+use airglow_gpu::ash::vk::Handle;
+use airglow_graph::Access;
+
+use crate::access::{AirglowAccess, Number};
+use crate::binding::AirglowBinding;
+use crate::conformance::{adopt, attempt};
+use crate::context::{AirglowContext, airglow_context_drop};
+use crate::prepared::{
+    AirglowPrepared, airglow_prepared_accesses, airglow_prepared_drop, airglow_prepared_record,
+};
+use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+
+/// A context and what was made from it.
+pub(crate) struct ThroughC {
+    pub context: *mut AirglowContext,
+    held: Vec<Box<dyn FnOnce()>>,
+}
+
+impl ThroughC {
+    /// Adopts a host's device for what `ask` adds to requirements.
+    pub(crate) fn adopt(
+        host: &HostDevice<'_>,
+        ask: impl FnOnce(*mut AirglowRequirements) -> Result<(), Refusal>,
+    ) -> Result<Self, Refusal> {
+        let mut asked = null_mut();
+        attempt!(airglow_requirements_new, &raw mut asked)?;
+        let adopted = ask(asked).and_then(|()| adopt(host, asked));
+        // SAFETY: they were read by the calls above alone.
+        unsafe { airglow_requirements_drop(asked) };
+        Ok(Self { context: adopted?, held: Vec::new() })
+    }
+
+    /// Holds what `make` hands over; `drop` drops it.
+    pub(crate) fn hold<T: 'static>(
+        &mut self,
+        drop: unsafe extern "C" fn(*mut T),
+        make: impl FnOnce(*mut *mut T) -> Result<(), Refusal>,
+    ) -> Result<*mut T, Refusal> {
+        let mut made = null_mut();
+        let result = make(&raw mut made);
+        // SAFETY: it came from the function that goes with `drop`, and is not used again.
+        self.held.push(Box::new(move || unsafe { drop(made) }));
+        result.map(|()| made)
+    }
+
+    /// Holds a frame that `prepare` prepares.
+    pub(crate) fn prepare(
+        &mut self,
+        prepare: impl FnOnce(*mut *mut AirglowPrepared) -> Result<(), Refusal>,
+    ) -> Result<*mut AirglowPrepared, Refusal> {
+        self.hold(airglow_prepared_drop, prepare)
+    }
+}
+
+impl Drop for ThroughC {
+    fn drop(&mut self) {
+        // The context first: what was made from it may outlive it.
+        // SAFETY: it came from its function and is not used again.
+        unsafe { airglow_context_drop(self.context) };
+        self.held.drain(..).for_each(|drop| drop());
+    }
+}
+
+/// The uses that a prepared frame lists.
+pub(crate) fn uses(prepared: *const AirglowPrepared) -> Result<Vec<AirglowAccess>, Refusal> {
+    let mut count = 0;
+    attempt!(airglow_prepared_accesses, prepared, null_mut(), &raw mut count)?;
+    // SAFETY: zero bytes are a valid access.
+    let mut uses = vec![unsafe { zeroed::<AirglowAccess>() }; count];
+    attempt!(airglow_prepared_accesses, prepared, uses.as_mut_ptr(), &raw mut count)?;
+    Ok(uses)
+}
+
+/// The first and the last use listed of each of these resources.
+pub(crate) fn ends(
+    prepared: *const AirglowPrepared,
+    resources: &[Number],
+) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
+    let uses = uses(prepared)?;
+    let ends = |number: &Number| {
+        let all = uses.iter().filter(|used| (used.resource, used.index) == *number).map(known);
+        let all = all.collect::<Result<Vec<_>, _>>()?;
+        Ok(all.first().copied().zip(all.last().copied()))
+    };
+    resources.iter().map(ends).collect()
+}
+
+/// The access of the table that has those numbers.
+fn known(used: &AirglowAccess) -> Result<Access, Refusal> {
+    let numbers = (used.stage, used.access, used.writes != 0);
+    let same = |access: &&Access| {
+        (access.stage().as_raw(), access.access().as_raw(), access.writes()) == numbers
+            && (used.layout == 0 || access.layout().as_raw() as u32 == used.layout)
+    };
+    let found = Access::ALL.iter().find(same).copied();
+    found.ok_or_else(|| format!("no use has stage {:#x} and access {:#x}", used.stage, used.access).into())
+}
+
+/// A host's resource as a binding.
+pub(crate) fn binding((resource, index): Number, given: &Given) -> AirglowBinding {
+    // SAFETY: zero bytes are a valid binding.
+    let none = AirglowBinding { resource, index, ..unsafe { zeroed() } };
+    match given {
+        Given::Buffer(buffer) => AirglowBinding {
+            buffer: buffer.raw().as_raw(),
+            size: buffer.size(),
+            usage: buffer.desc().usage.as_raw(),
+            ..none
+        },
+        Given::Image(image) => AirglowBinding {
+            image: image.raw().as_raw(),
+            format: image.desc().format.as_raw() as u32,
+            usage: image.desc().usage.as_raw(),
+            extent: [image.desc().extent[0], image.desc().extent[1]],
+            mips: image.desc().mips,
+            ..none
+        },
+    }
+}
+
+/// Records a prepared frame with these resources.
+pub(crate) fn record<'a>(
+    prepared: *const AirglowPrepared,
+    recorder: &mut Recorder<'_>,
+    resources: impl IntoIterator<Item = (Number, &'a Given)>,
+) -> Result<(), Refusal> {
+    let bindings: Vec<_> = resources.into_iter().map(|(number, given)| binding(number, given)).collect();
+    let commands = recorder.command_buffer().as_raw();
+    attempt!(airglow_prepared_record, prepared, commands, bindings.as_ptr(), bindings.len())
+}
