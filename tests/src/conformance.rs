@@ -6,6 +6,7 @@ use airglow_gpu::ash::{self, vk};
 use airglow_gpu::open::OpenDevice;
 use airglow_gpu::{Context, FeatureSet, FeatureStorage, Options, Requirements, patch_features};
 use std::ffi::c_void;
+use std::ops::Range;
 
 pub use airglow_conformance::*;
 
@@ -31,17 +32,64 @@ pub fn conform_adopting<R: Room>(
     requirements: &Requirements,
     options: &Options,
 ) -> Outputs {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { conform_on(host, requirements, options, make) }
+    })
+}
+
+/// Lets every call of a room that may fail do so in turn, on a device of its own; returns how many there were.
+///
+/// # Panics
+/// On an error of [`fail_on`], and if validation says anything.
+pub fn fail_each<R: Room>(make: impl Fn(&Context) -> Result<R, Refusal>, requirements: &Requirements) -> u64 {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { fail_on(host, requirements, |context, _| make(context)) }
+    })
+}
+
+/// Runs two of a room in one plan in several orders, on a device of their own; returns how many orders there were.
+///
+/// # Panics
+/// On an error of [`shuffle_on`], and if validation says anything.
+pub fn shuffle<R: Room>(
+    make: impl Fn(&Context) -> Result<R, Refusal>,
+    requirements: &Requirements,
+    seeds: Range<u64>,
+) -> usize {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { shuffle_on(host, requirements, seeds, |context, _| make(context)) }
+    })
+    .len()
+}
+
+/// Changes a room with every frame, in the order of `makes`, on a device of its own, and waits for none of them.
+///
+/// # Panics
+/// On an error of [`change_on`], and if validation says anything.
+pub fn change<R: Room>(makes: &[Make<'_, R>], requirements: &Requirements) {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { change_on(host, requirements, makes) }
+    });
+}
+
+/// Runs `test` on a device that a host made itself; validation is to stay silent.
+fn on_own_device<T>(
+    requirements: &Requirements,
+    test: impl FnOnce(&HostDevice<'_>) -> Result<T, Refusal>,
+) -> T {
     let open = open(requirements);
     let (device, features) = device(&open, requirements);
-    let host = HostDevice { features, ..stated(&open, &device) };
-    // SAFETY: the device was just made, as stated, and is no one else's.
-    let outputs = unsafe { conform_on(&host, requirements, options, make) };
-    let outputs = outputs.unwrap_or_else(|problem| panic!("{problem}"));
+    let done = test(&HostDevice { features, ..stated(&open, &device) });
+    let done = done.unwrap_or_else(|problem| panic!("{problem}"));
     // SAFETY: the device is idle, and everything made on it is gone.
     unsafe { device.destroy_device(None) };
     let said: Vec<_> = open.messages().take().iter().map(ToString::to_string).collect();
     assert!(said.is_empty(), "validation said:\n{}", said.join("\n"));
-    outputs
+    done
 }
 
 /// A second device: the host chains what it wants itself, and has the room's features patched in.

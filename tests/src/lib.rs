@@ -9,6 +9,8 @@ pub mod data;
 pub mod device;
 pub mod golden;
 pub mod heap;
+pub mod hosts;
+pub mod narrow;
 pub mod plan;
 pub mod reflect;
 pub mod shim;

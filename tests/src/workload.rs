@@ -70,7 +70,11 @@ pub fn colours(context: &Context) -> Result<ComputePipeline, GpuError> {
     })
 }
 
-fn points(context: &Context) -> Result<GraphicsPipeline, GpuError> {
+/// The pipeline that draws points, for [`begin_points`].
+///
+/// # Errors
+/// Those of making a pipeline.
+pub fn points(context: &Context) -> Result<GraphicsPipeline, GpuError> {
     let (vertex, fragment) = (words("test/points_vertex"), words("test/points_fragment"));
     let attributes = [VertexAttribute { location: 0, format: FORMAT, offset: 0 }];
     let colours =

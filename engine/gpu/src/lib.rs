@@ -33,6 +33,7 @@ mod retire;
 mod shared;
 #[cfg(feature = "surface")]
 pub mod surface;
+mod tally;
 mod timing;
 
 pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
@@ -58,4 +59,5 @@ pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
 pub use requirements::Requirements;
 pub use resources::{Imports, Resources};
+pub use tally::{Counted, Look, Records, TALLY_BINDINGS, Tally};
 pub use timing::{FrameTimes, PassStatistics, PassTime, Timing, TimingSummary};

@@ -7,10 +7,14 @@ use airglow_fog::{
     Settings, View,
 };
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
-use airglow_gpu::{Context, Options, Record, Recorder, Requirements};
+use airglow_gpu::{Context, DeviceMask, Options, Record, Recorder, Requirements};
 use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_math::World;
-use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
+use airglow_tests::compare::assert_close;
+use airglow_tests::conformance::{
+    Declared, Given, HostResource, Refusal, Room, conform, fail_each, shuffle,
+};
+use airglow_tests::narrow;
 use airglow_tests::reflect::Module;
 use glam::DVec3;
 
@@ -91,19 +95,53 @@ impl Room for Fogged {
     }
 }
 
-#[test]
-fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads() {
-    let settings = Settings::default();
-    let make = |context: &Context| Fogged { fog: Fog::new(context, settings).unwrap(), pass: None };
-    let outputs = conform(make, &Fog::requirements(&settings), &Options::default());
+impl Fogged {
+    fn new(context: &Context) -> Result<Self, Refusal> {
+        Ok(Self { fog: Fog::new(context, Settings::default())?, pass: None })
+    }
+}
+
+/// The picture by both roads, as values.
+fn picture(options: &Options) -> Vec<f32> {
+    let make = |context: &Context| Fogged::new(context).unwrap();
+    let outputs = conform(make, &Fog::requirements(&Settings::default()), options);
     let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    let picture: Vec<f32> = outputs[0].chunks_exact(4).map(value).collect();
-    assert_eq!(picture.len(), 4 * PIXELS);
+    outputs[0].chunks_exact(4).map(value).collect()
+}
+
+#[test]
+fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads_and_on_a_lesser_one() {
+    let whole = picture(&Options::default());
+    assert_eq!(whole.len(), 4 * PIXELS);
     assert!(
-        picture.chunks_exact(4).all(|texel| texel[..3].iter().all(|value| value.is_finite() && *value > 0.0))
+        whole.chunks_exact(4).all(|texel| texel[..3].iter().all(|value| value.is_finite() && *value > 0.0))
     );
     // No surface, no light of it: the airlight is warm, the surface there was not.
-    assert!(picture[0] > picture[2], "{:?}", &picture[..4]);
+    assert!(whole[0] > whole[2], "{:?}", &whole[..4]);
+    let mask = DeviceMask { without_optional_features: true, ..DeviceMask::default() };
+    assert!(picture(&Options { mask, breadcrumbs: true, ..Options::default() }) == whole);
+}
+
+#[test]
+fn narrow_vectors_stay_within_rounding() {
+    let values = picture(&Options::default());
+    if let Some(narrow) = narrow::again("narrow_vectors_stay_within_rounding", &values) {
+        assert_close("subgroups of 4", &narrow, &values, 1e-6, 1e-5);
+    }
+}
+
+#[test]
+fn every_call_that_fails_is_told_and_leaves_nothing() {
+    let calls = fail_each(Fogged::new, &Fog::requirements(&Settings::default()));
+    println!("{calls} calls failed in turn");
+    assert!(calls > 30, "only {calls} calls could fail");
+}
+
+#[test]
+fn every_legal_order_gives_the_same_bits() {
+    let orders = shuffle(Fogged::new, &Fog::requirements(&Settings::default()), 0..6);
+    println!("{orders} orders gave the same bits");
+    assert_eq!(orders, 2, "one pass each");
 }
 
 #[test]

@@ -11,10 +11,12 @@ use airglow_relight::{
     Settings,
 };
 use airglow_tests::compare::assert_close;
-use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
+use airglow_tests::conformance::{
+    Declared, Given, HostResource, Refusal, Room, conform, fail_each, shuffle,
+};
+use airglow_tests::narrow;
 use glam::DQuat;
 use host::Numbers;
-use std::process::Command;
 
 const WIDTH: u32 = 32;
 const HEIGHT: u32 = 16;
@@ -29,11 +31,11 @@ struct Relit {
 }
 
 impl Relit {
-    fn new(context: &Context, settings: Settings) -> Self {
-        let mut relight = Relight::new(context, settings).expect("the settings are sound");
+    fn new(context: &Context, settings: Settings) -> Result<Self, Refusal> {
+        let mut relight = Relight::new(context, settings)?;
         let vectors = Numbers::new(3).values(VERTICES as usize * settings.coefficients());
-        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors)).expect("the mesh is sound");
-        Self { relight, mesh, prepared: None }
+        let mesh = relight.add_mesh(context, "mesh", VERTICES, Some(&vectors))?;
+        Ok(Self { relight, mesh, prepared: None })
     }
 
     fn frame<B, I>(&self, image: I, target: B) -> Frame<B, I> {
@@ -116,8 +118,8 @@ impl Room for Relit {
 
 /// The colours by both roads, as values.
 fn colours(settings: Settings, options: &Options) -> Vec<f32> {
-    let outputs =
-        conform(|context| Relit::new(context, settings), &Relight::requirements(&settings), options);
+    let make = |context: &Context| Relit::new(context, settings).expect("the settings are sound");
+    let outputs = conform(make, &Relight::requirements(&settings), options);
     let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     outputs[0].chunks_exact(4).map(value).collect()
 }
@@ -140,33 +142,31 @@ fn a_lesser_device_gets_the_same_bits() {
     assert_eq!(colours(settings, &Options { mask, ..Options::default() }), whole);
 }
 
-/// Set in the process that [`narrow_vectors_stay_within_rounding`] starts.
-const NARROW: &str = "AIRGLOW_TEST_NARROW";
-
 #[test]
 fn narrow_vectors_stay_within_rounding() {
     let values = colours(Settings::default(), &Options::default());
-    if std::env::var_os(NARROW).is_some() {
-        let bits: Vec<_> = values.iter().map(|value| format!("{:08x}", value.to_bits())).collect();
-        println!("bits {}", bits.join(" "));
-        return;
+    if let Some(narrow) = narrow::again("narrow_vectors_stay_within_rounding", &values) {
+        assert_close("subgroups of 4", &narrow, &values, 1e-5, 1e-5);
     }
-    // llvmpipe reads its width once: subgroups of 4 need a process of their own.
-    let program = std::env::current_exe().expect("this test is a program");
-    let output = Command::new(program)
-        .args(["--exact", "narrow_vectors_stay_within_rounding", "--nocapture"])
-        .env(NARROW, "1")
-        .env("LP_NATIVE_VECTOR_WIDTH", "128")
-        .output()
-        .expect("the program runs again");
-    let text = String::from_utf8_lossy(&output.stdout);
-    let line = text.lines().find_map(|line| line.split_once("bits ")).map(|(_, bits)| bits);
-    let line = line.unwrap_or_else(|| panic!("{text}\n{}", String::from_utf8_lossy(&output.stderr)));
-    let narrow: Vec<f32> = line
-        .split(' ')
-        .map(|word| f32::from_bits(u32::from_str_radix(word, 16).expect("hexadecimal")))
-        .collect();
-    assert_close("subgroups of 4", &narrow, &values, 1e-5, 1e-5);
-    let same = narrow.iter().zip(&values).filter(|(a, b)| a.to_bits() == b.to_bits()).count();
-    println!("{same} of {} values have the same bits", values.len());
+}
+
+#[test]
+fn every_call_that_fails_is_told_and_leaves_nothing() {
+    for method in [Method::Compute, Method::Fragment] {
+        let settings = Settings { method, ..Settings::default() };
+        let calls = fail_each(|context| Relit::new(context, settings), &Relight::requirements(&settings));
+        println!("{method:?}: {calls} calls failed in turn");
+        assert!(calls > 60, "only {calls} calls could fail");
+    }
+}
+
+#[test]
+fn every_legal_order_gives_the_same_bits() {
+    for method in [Method::Compute, Method::Fragment] {
+        let settings = Settings { method, ..Settings::default() };
+        let make = |context: &Context| Relit::new(context, settings);
+        let orders = shuffle(make, &Relight::requirements(&settings), 0..6);
+        println!("{method:?}: {orders} orders gave the same bits");
+        assert!(orders > 4);
+    }
 }

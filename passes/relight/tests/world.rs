@@ -6,7 +6,7 @@ mod host;
 
 use airglow_bake::{Mesh, unshadowed};
 use airglow_math::World;
-use airglow_math::world::{Axes, Depth, Winding};
+use airglow_math::world::{Depth, Winding};
 use airglow_relight::{
     Bench, Case, CaseLight, Instance, Light, Relight, RelightError, Settings, Texels, instance_rotation,
 };
@@ -25,20 +25,8 @@ const EYE: DVec3 = DVec3::new(0.5, 1.0, 5.0);
 fn hosts() -> [World; 3] {
     // Positions relative to the camera, as this host's axes and units name its place.
     let at_camera = |world: World| World { origin: world.host_position(PLACE + EYE), ..world };
-    let like_gltf = World { origin: PLACE, ..World::default() };
-    let like_unreal = World {
-        axes: Axes::Z_UP_LEFT_HANDED,
-        metres_per_unit: 0.01,
-        depth: Depth { reversed: true, near: 10.0, far: None, orthographic: false },
-        ..World::default()
-    };
-    let y_down = World {
-        axes: Axes::Y_DOWN_RIGHT_HANDED,
-        front_face: Winding::Clockwise,
-        pre_exposure: 0.37,
-        depth: Depth { near: 0.5, far: Some(90.0), ..Depth::default() },
-        ..World::default()
-    };
+    let [like_gltf, like_unreal, y_down] = airglow_tests::hosts::hosts();
+    let like_gltf = World { origin: PLACE, ..like_gltf };
     [like_gltf, at_camera(like_unreal), at_camera(y_down)]
 }
 

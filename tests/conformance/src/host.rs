@@ -1,16 +1,16 @@
 //! The host: its memory and its submission, on a device that is given.
 
 use super::roads::{by_graph, by_record, fill, read_back};
-use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, layout_after};
+use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, check_layouts};
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
 use airglow_gpu::{AdoptInfo, Context, FeatureSet, Label, Options, Readback, Recorder, Requirements};
 
 /// A host on a device.
 pub(super) struct Host<'a> {
-    stated: HostDevice<'a>,
-    device: ash::Device,
-    pool: vk::CommandPool,
+    pub(super) stated: HostDevice<'a>,
+    pub(super) device: ash::Device,
+    pub(super) pool: vk::CommandPool,
 }
 
 /// A host's device as it states it.
@@ -38,9 +38,10 @@ pub struct HostDevice<'a> {
     pub extensions: &'a [&'a str],
 }
 
-/// A resource that the host made, with its memory.
-struct Made {
-    given: Given,
+/// What the host made, with its memory; destroyed with it.
+pub(super) struct Held<'a> {
+    device: &'a ash::Device,
+    raw: Raw,
     memory: vk::DeviceMemory,
 }
 
@@ -51,17 +52,21 @@ enum Raw {
 }
 
 /// What the host asked its device for, beside the device's answer.
-fn of(what: &'static str) -> impl Fn(vk::Result) -> Refusal {
+pub(super) fn of(what: &'static str) -> impl Fn(vk::Result) -> Refusal {
     move |result| format!("the host asked for {what}: {result}").into()
 }
 
-impl Made {
-    fn into_own(self) -> (Raw, vk::DeviceMemory) {
-        let raw = match self.given {
-            Given::Image(image) => Raw::Image(image.raw()),
-            Given::Buffer(buffer) => Raw::Buffer(buffer.raw()),
-        };
-        (raw, self.memory)
+impl Drop for Held<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the device is idle, and nothing of the library refers to the resource any more: whoever holds this
+        // made it before the context.
+        unsafe {
+            match self.raw {
+                Raw::Image(image) => self.device.destroy_image(image, None),
+                Raw::Buffer(buffer) => self.device.destroy_buffer(buffer, None),
+            }
+            self.device.free_memory(self.memory, None);
+        }
     }
 }
 
@@ -83,17 +88,26 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
-    pub(super) fn run<R: Room>(
+    /// A watch over the device.
+    pub(super) fn watch(&self) -> Shim {
+        // SAFETY: `Self::new` was given live handles with their own functions.
+        unsafe { Shim::watching(&self.stated) }
+    }
+
+    /// The device as a room is told of it, with `shim` listening.
+    pub(super) fn told(&self, shim: &Shim) -> HostDevice<'a> {
+        HostDevice { get_device_proc_addr: shim.get_device_proc_addr(), ..self.stated }
+    }
+
+    /// A context on the device, with `shim` listening.
+    pub(super) fn adopt(
         &self,
-        make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
+        shim: &Shim,
         requirements: &Requirements,
         options: &Options,
-        road: Road,
-    ) -> Result<(Outputs, Vec<Call>), Refusal> {
-        // SAFETY: `Self::new` was given live handles with their own functions.
-        let shim = unsafe { Shim::watching(&self.stated) };
-        let host = HostDevice { get_device_proc_addr: shim.get_device_proc_addr(), ..self.stated };
+        frames_in_flight: u32,
+    ) -> Result<Context, Refusal> {
+        let host = self.told(shim);
         let info = AdoptInfo {
             get_instance_proc_addr: host.get_instance_proc_addr,
             get_device_proc_addr: Some(host.get_device_proc_addr),
@@ -107,65 +121,116 @@ impl<'a> Host<'a> {
             requirements,
             allocator: None,
             pipeline_cache: vk::PipelineCache::null(),
-            frames_in_flight: 1,
+            frames_in_flight,
             options: options.clone(),
         };
-        // SAFETY: handles of this host; all that is made from the context is dropped below, after waiting.
-        let context = unsafe { Context::adopt(info) }?;
-        let mut room = make(&context, &host)?;
+        // SAFETY: handles of this host; whoever adopts drops the context when the device is idle.
+        Ok(unsafe { Context::adopt(info) }?)
+    }
+
+    /// Runs one frame of the room; returns the bytes of the host's buffers and the room's commands.
+    pub(super) fn run<R: Room>(
+        &self,
+        make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
+        requirements: &Requirements,
+        options: &Options,
+        road: Road,
+    ) -> Result<(Outputs, Vec<Call>), Refusal> {
+        let shim = self.watch();
+        let adopt = || self.adopt(&shim, requirements, options, 1);
+        let done = self.frame_of(&shim, adopt, make, road, true)?;
+        match shim.alive() {
+            alive if alive.is_empty() => Ok(done),
+            alive => Err(format!("{road:?} left alive: {alive:?}").into()),
+        }
+    }
+
+    /// Records one frame of the room, and submits it where it is asked to. All that was made is gone afterwards.
+    pub(super) fn frame_of<R: Room>(
+        &self,
+        shim: &Shim,
+        adopt: impl Fn() -> Result<Context, Refusal>,
+        make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
+        road: Road,
+        submit: bool,
+    ) -> Result<(Outputs, Vec<Call>), Refusal> {
+        let mut held = Vec::new();
+        let context = adopt()?;
+        let mut room = make(&context, &self.told(shim))?;
         let resources = room.resources();
-        let made = resources.iter().map(|resource| self.make(&context, resource));
-        let made = made.collect::<Result<Vec<_>, _>>()?;
-        let given: Vec<_> = made.iter().map(|made| made.given.clone()).collect();
+        let given = self.give(&context, &resources, &mut held)?;
         let (mut calls, mut execution) = (Vec::new(), None);
-        let outputs = self.frame(&context, |recorder| {
+        let outputs = self.frame(&context, submit, |recorder| {
             for (resource, given) in resources.iter().zip(&given) {
                 fill(recorder, resource, given, resource.entry)?;
             }
             shim.take_calls();
             match road {
-                Road::Graph => execution = Some(by_graph(&mut room, recorder, &resources, &given)?),
-                Road::Record => by_record(&mut room, recorder, &resources, &given, &shim, &mut calls)?,
-            }
-            if road == Road::Graph {
-                calls = shim.take_calls();
-                for (resource, given) in resources.iter().zip(&given) {
-                    let Given::Image(image) = given else { continue };
-                    let layout = layout_after(&calls, image.raw(), resource.entry.layout)?;
-                    if layout != resource.exit.layout {
-                        let (name, promised) = (resource.name, resource.exit.layout);
-                        return Err(format!("{name}: {layout:?} on exit, {promised:?} promised").into());
-                    }
+                Road::Graph => {
+                    let rooms = [(&mut room, &*resources, &*given)];
+                    execution = Some(by_graph(rooms, recorder, &Default::default())?);
+                    calls = shim.take_calls();
+                    check_layouts(&calls, &resources, &given)?;
                 }
+                Road::Record => by_record(&mut room, recorder, &resources, &given, shim, &mut calls)?,
             }
             Ok(read_back(recorder, &resources, &given)?)
-        });
-        let own: Vec<_> = made.into_iter().map(Made::into_own).collect();
-        drop((execution, room, given, context));
-        own.into_iter().for_each(|own| self.destroy(own));
-        let outputs = outputs?;
-        match shim.alive() {
-            alive if alive.is_empty() => Ok((outputs, calls)),
-            alive => Err(format!("{road:?} left alive: {alive:?}").into()),
-        }
+        })?;
+        Ok((outputs, calls))
     }
 
-    /// Records, submits and waits; what was read back.
-    fn frame(
+    /// Makes what a room uses of the host's.
+    pub(super) fn give<'h>(
+        &'h self,
+        context: &Context,
+        resources: &[HostResource],
+        held: &mut Vec<Held<'h>>,
+    ) -> Result<Vec<Given>, Refusal> {
+        let made = resources.iter().map(|resource| {
+            let (given, own) = self.make(context, resource)?;
+            held.push(own);
+            Ok(given)
+        });
+        made.collect()
+    }
+
+    /// Records; submits and waits where it is asked to. What was read back.
+    pub(super) fn frame(
         &self,
         context: &Context,
+        submit: bool,
         record: impl FnOnce(&mut Recorder<'_>) -> Result<Vec<Readback>, Refusal>,
     ) -> Result<Outputs, Refusal> {
         let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
-        // SAFETY: handles of this host; the command buffer is recorded, submitted once and waited for here.
-        let copies = unsafe {
+        // SAFETY: handles of this host; the command buffer is submitted at most once and waited for, then freed.
+        unsafe {
             let commands = self.device.allocate_command_buffers(&info).map_err(of("a command buffer"))?;
-            let begun = self.device.begin_command_buffer(commands[0], &Default::default());
-            begun.map_err(of("recording"))?;
-            let copies = record(&mut Recorder::new(context, commands[0]))?;
-            self.device.end_command_buffer(commands[0]).map_err(of("a complete command buffer"))?;
-            let submit = vk::SubmitInfo::default().command_buffers(&commands);
-            let submitted = self.device.queue_submit(self.stated.queue, &[submit], vk::Fence::null());
+            let recorded = self.record(context, commands[0], submit, record);
+            self.device.free_command_buffers(self.pool, &commands);
+            recorded
+        }
+    }
+
+    /// # Safety
+    /// The command buffer is of this host's pool, and new.
+    unsafe fn record(
+        &self,
+        context: &Context,
+        commands: vk::CommandBuffer,
+        submit: bool,
+        record: impl FnOnce(&mut Recorder<'_>) -> Result<Vec<Readback>, Refusal>,
+    ) -> Result<Outputs, Refusal> {
+        // SAFETY: handles of this host; the caller vouches for the command buffer, which is submitted once, here.
+        let copies = unsafe {
+            self.device.begin_command_buffer(commands, &Default::default()).map_err(of("recording"))?;
+            let copies = record(&mut Recorder::new(context, commands))?;
+            self.device.end_command_buffer(commands).map_err(of("a complete command buffer"))?;
+            if !submit {
+                return Ok(Outputs::new());
+            }
+            let commands = [commands];
+            let info = vk::SubmitInfo::default().command_buffers(&commands);
+            let submitted = self.device.queue_submit(self.stated.queue, &[info], vk::Fence::null());
             submitted.map_err(of("submission"))?;
             self.device.queue_wait_idle(self.stated.queue).map_err(of("the frame's end"))?;
             copies
@@ -174,7 +239,7 @@ impl<'a> Host<'a> {
     }
 
     /// Makes a resource with memory of its own.
-    fn make(&self, context: &Context, resource: &HostResource) -> Result<Made, Refusal> {
+    fn make(&self, context: &Context, resource: &HostResource) -> Result<(Given, Held<'_>), Refusal> {
         let label = Label::new("host", resource.name);
         let allocate = |requirements: vk::MemoryRequirements| {
             let info = vk::MemoryAllocateInfo::default()
@@ -198,27 +263,18 @@ impl<'a> Host<'a> {
                     let raw = self.device.create_image(&info, None).map_err(of("an image"))?;
                     let memory = allocate(self.device.get_image_memory_requirements(raw))?;
                     self.device.bind_image_memory(raw, memory, 0).map_err(of("bound memory"))?;
-                    Ok(Made { given: Given::Image(context.import_image(raw, label, desc)), memory })
+                    let held = Held { device: &self.device, raw: Raw::Image(raw), memory };
+                    Ok((Given::Image(context.import_image(raw, label, desc)), held))
                 }
                 Content::Buffer(desc, _) => {
                     let info = vk::BufferCreateInfo::default().size(desc.size).usage(desc.usage);
                     let raw = self.device.create_buffer(&info, None).map_err(of("a buffer"))?;
                     let memory = allocate(self.device.get_buffer_memory_requirements(raw))?;
                     self.device.bind_buffer_memory(raw, memory, 0).map_err(of("bound memory"))?;
-                    Ok(Made { given: Given::Buffer(context.import_buffer(raw, label, desc)), memory })
+                    let held = Held { device: &self.device, raw: Raw::Buffer(raw), memory };
+                    Ok((Given::Buffer(context.import_buffer(raw, label, desc)), held))
                 }
             }
-        }
-    }
-
-    fn destroy(&self, (raw, memory): (Raw, vk::DeviceMemory)) {
-        // SAFETY: the device is idle, and nothing of the library refers to the resource any more.
-        unsafe {
-            match raw {
-                Raw::Image(image) => self.device.destroy_image(image, None),
-                Raw::Buffer(buffer) => self.device.destroy_buffer(buffer, None),
-            }
-            self.device.free_memory(memory, None);
         }
     }
 }

@@ -4,8 +4,11 @@
 //! It checks bits, layouts, command-buffer state, and that nothing stays alive, and returns what is wrong as an error. What
 //! validation says is for whoever made the device to hear.
 
+mod changes;
 mod declared;
+mod faults;
 mod host;
+mod orders;
 pub mod plan;
 mod roads;
 pub mod shim;
@@ -17,8 +20,11 @@ use airglow_graph::{Access, BufferDesc, ImageDesc, State};
 use host::Host;
 use std::error::Error;
 
+pub use changes::{Make, change_on};
 pub use declared::{Declared, Named, copy_mips};
+pub use faults::fail_on;
 pub use host::HostDevice;
+pub use orders::shuffle_on;
 
 /// What a room says when it refuses, or the kit of what it found.
 pub type Refusal = Box<dyn Error>;
@@ -200,6 +206,19 @@ fn check_state(calls: &[Call], road: Road) -> Result<(), Refusal> {
         let count = |name| calls.iter().filter(|call| call.name == name).count();
         if count(begin) != count(end) {
             return wrong(format!("{begin} without {end}"));
+        }
+    }
+    Ok(())
+}
+
+/// Each image is left in the layout that was promised.
+fn check_layouts(calls: &[Call], resources: &[HostResource], given: &[Given]) -> Result<(), Refusal> {
+    for (resource, given) in resources.iter().zip(given) {
+        let Given::Image(image) = given else { continue };
+        let layout = layout_after(calls, image.raw(), resource.entry.layout)?;
+        if layout != resource.exit.layout {
+            let (name, promised) = (resource.name, resource.exit.layout);
+            return Err(format!("{name}: {layout:?} on exit, {promised:?} promised").into());
         }
     }
     Ok(())

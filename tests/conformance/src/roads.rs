@@ -5,7 +5,7 @@ use crate::plan::checked;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Execution, GpuError, Imports, Readback, Record, Recorder};
-use airglow_graph::{Access, Graph, State};
+use airglow_graph::{Access, Graph, Options, State};
 
 /// The host's own commands before the room: contents, then the state handed over.
 pub(super) fn fill(
@@ -51,29 +51,32 @@ fn hand_over(recorder: &mut Recorder<'_>, given: &Given, from: State, to: State)
     Ok(())
 }
 
-pub(super) fn by_graph(
-    room: &mut impl Room,
+/// One plan of all rooms, each with its resources of the host's.
+pub(super) fn by_graph<'r, R: Room + 'r>(
+    rooms: impl IntoIterator<Item = (&'r mut R, &'r [HostResource], &'r [Given])>,
     recorder: &mut Recorder<'_>,
-    resources: &[HostResource],
-    given: &[Given],
+    options: &Options,
 ) -> Result<Execution, Refusal> {
     let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
-    let name = |(resource, given): (&HostResource, &Given)| match given {
-        Given::Buffer(buffer) => {
-            let handle = graph.import_buffer(resource.name, *buffer.desc(), resource.entry, resource.exit);
-            imports.buffer(&handle, buffer);
-            Named::Buffer(handle)
-        }
-        Given::Image(image) => {
-            let handle = graph.import_image(resource.name, *image.desc(), resource.entry, resource.exit);
-            imports.image(&handle, image);
-            Named::Image(handle)
-        }
-    };
-    let named: Vec<_> = resources.iter().zip(given).map(name).collect();
     let context = recorder.context();
-    room.add(&mut Declared { context, graph: &mut graph, imports: &mut imports, host: &named })?;
-    let plan = checked(graph, &context.graph_limits(), &Default::default())?;
+    for (room, resources, given) in rooms {
+        let name = |(resource, given): (&HostResource, &Given)| match given {
+            Given::Buffer(buffer) => {
+                let handle =
+                    graph.import_buffer(resource.name, *buffer.desc(), resource.entry, resource.exit);
+                imports.buffer(&handle, buffer);
+                Named::Buffer(handle)
+            }
+            Given::Image(image) => {
+                let handle = graph.import_image(resource.name, *image.desc(), resource.entry, resource.exit);
+                imports.image(&handle, image);
+                Named::Image(handle)
+            }
+        };
+        let named: Vec<_> = resources.iter().zip(given).map(name).collect();
+        room.add(&mut Declared { context, graph: &mut graph, imports: &mut imports, host: &named })?;
+    }
+    let plan = checked(graph, &context.graph_limits(), options)?;
     let mut execution = Execution::prepare(context, plan)?;
     // SAFETY: the recorder's command buffer is recording; the host brought every import to its entry state.
     let recorded = unsafe { execution.record(context, recorder.command_buffer(), &imports, None) };

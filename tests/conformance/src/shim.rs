@@ -69,6 +69,8 @@ struct Watch {
     fallible: u64,
     /// From which such call on, for how many, and with which result they fail.
     failing: Option<(u64, u64, vk::Result)>,
+    /// The call that failed last.
+    failed: Option<&'static str>,
 }
 
 static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
@@ -101,7 +103,9 @@ fn failure(name: &'static str) -> Option<vk::Result> {
         let (first, count, result) = failing?;
         // A lost device is told by few functions; running out of memory by all that are watched as fallible.
         let tells = result != vk::Result::ERROR_DEVICE_LOST || table::TELL_LOSS.contains(&name);
-        (tells && (first..first.saturating_add(count)).contains(&call)).then_some(result)
+        let fails = tells && (first..first.saturating_add(count)).contains(&call);
+        watch.failed = if fails { Some(name) } else { watch.failed };
+        fails.then_some(result)
     })
 }
 
@@ -171,6 +175,11 @@ impl Shim {
             watch.failing = None;
             watch.fallible
         })
+    }
+
+    /// The call that failed last, for a message.
+    pub fn failed(&self) -> &'static str {
+        watch(|watch| watch.failed).unwrap_or("no call")
     }
 
     /// How many objects of each kind are alive, where it is not 0.

@@ -9,6 +9,8 @@ use airglow_tests::heap::{Counting, allocations};
 use airglow_tests::plan::compile;
 use std::time::Duration;
 
+mod indirect;
+
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
