@@ -4,23 +4,21 @@
 //! spread evenly, weighed with 1/d^2; and where the oracle's lie, as dots of the size of their domains. The scene is
 //! `assets/scenes/blocks.toml` without its sky.
 
-use std::ops::ControlFlow;
-use std::path::Path;
-
-use airglow_bake::{Mesh, unshadowed};
 use airglow_radiance::reference::Cube;
-use airglow_radiance::{
-    Glow, Hierarchy, OVERLAP, RadianceError, Reconstruction, Settings, Triangle, Weights, refine, rivals,
-};
+use airglow_radiance::{Glow, OVERLAP, RadianceError, Reconstruction, Settings, Weights, refine, rivals};
+use airglow_scene::FloatImage;
 use airglow_scene::image_io::write_png;
-use airglow_scene::{EmitterShape, FloatImage};
 use glam::DVec3;
+
+#[expect(dead_code, reason = "another example reads the rest")]
+#[path = "common/scene.rs"]
+mod scene;
+
+use scene::{Failure, Placed};
 
 const ORDER: usize = 4;
 /// Pixels along a side of each of the four pictures.
 const SIDE: usize = 360;
-
-type Failure = Box<dyn std::error::Error>;
 
 /// A picture with the depth of each pixel.
 struct Picture {
@@ -87,47 +85,21 @@ impl Picture {
     }
 }
 
-/// The twelve triangles of a box.
-fn block(centre: DVec3, half: DVec3, radiance: DVec3) -> Vec<Triangle> {
-    let side = |axis: usize, sign: f64| {
-        let unit = |i: usize| DVec3::AXES[i % 3] * half[i % 3];
-        let (n, x, y) = (sign * unit(axis), unit(axis + 1), unit(axis + 2));
-        let c = [n - x - y, n + x - y, n + x + y, n - x + y].map(|corner| centre + corner);
-        [[c[0], c[1], c[2]], [c[0], c[2], c[3]]].map(|corners| Triangle { corners, radiance })
-    };
-    (0..3).flat_map(|axis| [side(axis, -1.0), side(axis, 1.0)]).flatten().collect()
-}
-
 fn main() -> Result<(), Failure> {
     let file = std::env::args().nth(1).unwrap_or_else(|| "figure.png".to_owned());
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
-    let scene = airglow_scene::load(&assets.join("scenes/blocks.toml"))?;
-    let mesh = &scene.meshes[scene.instances[0].mesh];
-    let mut emitters = Vec::new();
-    for emitter in &scene.emitters {
-        let EmitterShape::Box { size } = emitter.shape else { continue };
-        let [centre, size, radiance] =
-            [emitter.center, size, emitter.radiance].map(|v| DVec3::from(v.map(f64::from)));
-        emitters.extend(block(centre, 0.5 * size, radiance));
-    }
-    let view =
-        Mesh { name: &mesh.name, positions: &mesh.positions, normals: &mesh.normals, indices: &mesh.indices };
-    let transfer = unshadowed(&view, scene.instances[0].transform, ORDER)?.transfer.coefficients;
-    let points: Vec<DVec3> = mesh.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
-    let colour = |vertex: usize, light: &[DVec3]| -> DVec3 {
-        transfer[vertex * light.len()..].iter().zip(light).map(|(t, l)| f64::from(*t) * *l).sum()
-    };
+    let Some(placed) = Placed::load("blocks", None)? else { return Ok(()) };
+    let (points, emitters) = (placed.points(), &placed.emitters);
+    let colour = |vertex: usize, light: &[DVec3]| placed.colour(vertex, light);
 
     let cube = Cube::new(ORDER, 64)?.with_gradients();
     let sample = |points: &[DVec3]| -> Result<Vec<_>, RadianceError> {
-        points.iter().map(|point| cube.sample(*point, &emitters)).collect()
+        points.iter().map(|point| cube.sample(*point, emitters)).collect()
     };
     let lights = sample(&points)?;
     let truth: Vec<_> = lights.iter().enumerate().map(|(v, light)| colour(v, &light.coefficients)).collect();
 
-    let tree = Hierarchy::build(&mesh.positions, &transfer, &mut |_, _| ControlFlow::Continue(()))?;
     let settings = Settings { bound: 0.02, ..Settings::default() };
-    let refined = refine(&tree, &settings, &Glow::of(&emitters), &mut |points| sample(points))?;
+    let refined = refine(&placed.tree, &settings, &Glow::of(emitters), &mut |points| sample(points))?;
     let reconstruction = Reconstruction::new(&refined, Weights::Compact, true);
     let mut light = vec![DVec3::ZERO; ORDER * ORDER];
     let mut ours = Vec::new();
@@ -135,7 +107,7 @@ fn main() -> Result<(), Failure> {
         reconstruction.light(*point, &mut light)?;
         ours.push(colour(vertex, &light));
     }
-    let places = rivals::places(&mesh.positions, refined.samples.len());
+    let places = rivals::places(&placed.positions, refined.samples.len());
     let even: Vec<_> = places.iter().copied().zip(sample(&places)?).collect();
     let even: Vec<_> =
         (0..points.len()).map(|v| colour(v, &rivals::interpolate(points[v], &even, 2.0))).collect();
@@ -148,7 +120,7 @@ fn main() -> Result<(), Failure> {
 
     let drawn = |colours: &[DVec3]| {
         let mut picture = Picture::new();
-        for triangle in mesh.indices.chunks_exact(3) {
+        for triangle in placed.indices.chunks_exact(3) {
             let corners = [triangle[0], triangle[1], triangle[2]].map(|i| i as usize);
             picture.triangle(corners.map(|i| points[i]), corners.map(|i| colours[i]));
         }

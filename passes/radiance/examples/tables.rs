@@ -1,272 +1,133 @@
-//! Errors of sampled light on three receivers: `cargo run --release -p airglow-radiance --example tables`.
+//! The tables of Sun 2005, chapter 4, on a device: `cargo run --release -p airglow-radiance --example tables`.
 //!
-//! Re-makes the rows of error of Sun 2005, tables 4.1, 4.2 and 4.4, with meshes like those of the thesis and emitters as
-//! its text describes them. Error: root mean square of the linear colour's difference from that of a sample at each
-//! vertex, over the root mean square of the latter.
+//! Scenes are files of `assets/scenes`, with meshes like those of the thesis and emitters as its text describes them;
+//! those whose mesh is not shipped are run where the folder of data is. Error: root mean square of the linear colour's
+//! difference from that of a sample at each vertex, over the root mean square of the latter; truth and samples have faces
+//! of one size. Times are of a submission from the CPU's side, medians of five, on the device of the tests, validation
+//! included. Words choose tables: armadillo, nave, buddha, buddha-fine.
 
-use std::ops::ControlFlow;
-use std::thread;
-use std::time::Instant;
+use airglow_gpu::{GpuError, Recorder};
+use airglow_radiance::gpu::bench::Bench;
+use airglow_radiance::{Oracle, PassSettings, Radiance, Settings};
+use airglow_tests::device::fixture_with;
 
-use airglow_bake::{Mesh, unshadowed};
-use airglow_radiance::reference::Cube;
-use airglow_radiance::{
-    Glow, Hierarchy, Incident, Oracle, RadianceError, Reconstruction, Refined, Settings, Triangle, Weights,
-    refine, rivals,
-};
-use glam::DVec3;
+#[path = "common/lab.rs"]
+mod lab;
+#[expect(dead_code, reason = "another example reads the rest")]
+#[path = "common/scene.rs"]
+mod scene;
 
-/// Bands of all vectors.
-const ORDER: usize = 4;
+use lab::{Lab, Outcome};
+use scene::{Failure, Placed};
 
-type Failure = Box<dyn std::error::Error>;
-
-/// A receiver with its emitters and its true colours.
-struct Case {
-    positions: Vec<[f32; 3]>,
-    transfer: Vec<f32>,
-    emitters: Vec<Triangle>,
-    truth: Vec<DVec3>,
-    cube: Cube,
-    tree: Hierarchy,
-}
-
-fn block(centre: DVec3, half: DVec3, radiance: DVec3) -> Vec<Triangle> {
-    let mut triangles = Vec::new();
-    for axis in 0..3 {
-        for side in [-1.0, 1.0] {
-            let unit = |i: usize| DVec3::AXES[i % 3] * half[i % 3];
-            let (n, x, y) = (side * unit(axis), unit(axis + 1), unit(axis + 2));
-            let c = [n - x - y, n + x - y, n + x + y, n - x + y].map(|corner| centre + corner);
-            triangles.push(Triangle { corners: [c[0], c[1], c[2]], radiance });
-            triangles.push(Triangle { corners: [c[0], c[2], c[3]], radiance });
-        }
-    }
-    triangles
-}
-
-impl Case {
-    /// `face` texels a side of a cube map, for the truth and for the samples of all methods.
-    fn new(
-        name: &str,
-        face: usize,
-        emitters: impl Fn(DVec3, DVec3) -> Vec<Triangle>,
-    ) -> Result<Option<Self>, Failure> {
-        let Some(path) = airglow_tests::data::find(name) else { return Ok(None) };
-        let scene = airglow_scene::load(&path)?;
-        let (mut positions, mut transfer) = (Vec::new(), Vec::new());
-        for instance in &scene.instances {
-            let mesh = &scene.meshes[instance.mesh];
-            let view =
-                Mesh { name, positions: &mesh.positions, normals: &mesh.normals, indices: &mesh.indices };
-            transfer.extend(unshadowed(&view, instance.transform, ORDER)?.transfer.coefficients);
-            let place = |p: &[f32; 3]| instance.transform.transform_point3((*p).into()).to_array();
-            positions.extend(mesh.positions.iter().map(place));
-        }
-        let points: Vec<DVec3> = positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
-        let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let emitters = emitters(low, high);
-        println!(
-            "{name}: {} vertices, box {low:.2} to {high:.2}, {} emitter triangles",
-            points.len(),
-            emitters.len()
-        );
-        let tree = Hierarchy::build(&positions, &transfer, &mut |_, _| ControlFlow::Continue(()))?;
-        let cube = Cube::new(ORDER, face)?;
-        let mut case = Self { positions, transfer, emitters, truth: Vec::new(), cube, tree };
-        let start = Instant::now();
-        let lights = case.sample(&points)?;
-        println!("  truth: {:.1} s", start.elapsed().as_secs_f64());
-        case.truth =
-            lights.iter().enumerate().map(|(v, light)| case.colour(v, &light.coefficients)).collect();
-        case.cube = case.cube.with_gradients();
-        Ok(Some(case))
-    }
-
-    fn point(&self, vertex: usize) -> DVec3 {
-        DVec3::from(self.positions[vertex].map(f64::from))
-    }
-
-    fn colour(&self, vertex: usize, light: &[DVec3]) -> DVec3 {
-        let transfer = &self.transfer[vertex * light.len()..][..light.len()];
-        transfer.iter().zip(light).map(|(t, l)| f64::from(*t) * *l).sum()
-    }
-
-    /// Cube maps at the points, on two threads.
-    fn sample(&self, points: &[DVec3]) -> Result<Vec<Incident>, RadianceError> {
-        let run = |points: &[DVec3]| -> Result<Vec<_>, _> {
-            points.iter().map(|point| self.cube.sample(*point, &self.emitters)).collect()
-        };
-        let (one, other) = points.split_at(points.len() / 2);
-        thread::scope(|scope| {
-            let first = scope.spawn(|| run(one));
-            let second = run(other)?;
-            let mut all = first.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-            all.extend(second);
-            Ok(all)
-        })
-    }
-
-    /// As the thesis has it, whose oracle believes what a sample sees.
-    fn refine(&self, settings: &Settings) -> Result<Refined, RadianceError> {
-        let settings = &Settings { hidden: 0.0, ..*settings };
-        refine(&self.tree, settings, &Glow::of(&self.emitters), &mut |points| self.sample(points))
-    }
-
-    /// Relative error of what `light` says of each vertex, and the seconds that this took.
-    fn error(
-        &self,
-        mut light: impl FnMut(DVec3) -> Result<Vec<DVec3>, RadianceError>,
-    ) -> Result<(f64, f64), RadianceError> {
-        let start = Instant::now();
-        let (mut difference, mut whole) = (0.0, 0.0);
-        for (vertex, truth) in self.truth.iter().enumerate() {
-            let colour = self.colour(vertex, &light(self.point(vertex))?);
-            difference += colour.distance_squared(*truth);
-            whole += truth.length_squared();
-        }
-        Ok(((difference / whole).sqrt(), start.elapsed().as_secs_f64()))
-    }
-
-    fn ours(
-        &self,
-        refined: &Refined,
-        weights: Weights,
-        extrapolate: bool,
-    ) -> Result<(f64, f64), RadianceError> {
-        let reconstruction = Reconstruction::new(refined, weights, extrapolate);
-        self.error(|point| {
-            let mut light = vec![DVec3::ZERO; ORDER * ORDER];
-            reconstruction.light(point, &mut light)?;
-            Ok(light)
-        })
-    }
-
-    /// The settings whose bound takes as near to `count` samples as there is and no more, by bisection.
-    fn settings_for(&self, count: usize, oracle: Oracle, stride: usize) -> Result<Settings, RadianceError> {
-        let (mut low, mut high) = (1e-6_f64, 1e3_f64);
-        let settings = |bound| Settings { oracle, stride, bound, limit: 2 * count, ..Settings::default() };
-        for _ in 0..14 {
-            let middle = (low * high).sqrt();
-            if self.refine(&settings(middle))?.samples.len() > count { low = middle } else { high = middle }
-        }
-        Ok(settings(high))
-    }
-
-    /// Even samples and ours, at about as many.
-    fn table(&self, counts: &[usize]) -> Result<(), Failure> {
-        for &count in counts {
-            let places = rivals::places(&self.positions, count);
-            let lights: Vec<_> = places.iter().copied().zip(self.sample(&places)?).collect();
-            for power in [1.0, 2.0, 4.0] {
-                let (error, seconds) = self.error(|point| Ok(rivals::interpolate(point, &lights, power)))?;
-                println!("  even, 1/d^{power}: {} samples, error {error:.4}, {seconds:.3} s", places.len());
-            }
-            let methods = [
-                ("thesis, eq. 3.3 as printed", Oracle::Printed, 1, Weights::Inverse),
-                ("thesis, eq. 3.3 as argued", Oracle::Argued, 1, Weights::Inverse),
-                ("ours", Oracle::Transfer, Settings::default().stride, Weights::Compact),
-            ];
-            for (name, oracle, stride, weights) in methods {
-                let settings = self.settings_for(count, oracle, stride)?;
-                let refined = self.refine(&settings)?;
-                for gradients in [false, true] {
-                    let (error, seconds) = self.ours(&refined, weights, gradients)?;
-                    let with = if gradients { ", gradients" } else { "" };
-                    let samples = refined.samples.len();
-                    println!(
-                        "  {name}{with}: bound {:.2e}, {samples} samples, error {error:.4}, {seconds:.3} s",
-                        settings.bound
-                    );
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Error against bound, over two decades and more.
-    fn sweep(&self, bounds: &[f64]) -> Result<(), Failure> {
-        for bound in bounds {
-            let refined = self.refine(&Settings { bound: *bound, limit: 1 << 14, ..Settings::default() })?;
-            let errors = [false, true].map(|gradients| self.ours(&refined, Weights::default(), gradients));
-            let [plain, gradients] = errors;
-            let (samples, rounds) = (refined.samples.len(), refined.rounds);
-            println!(
-                "  bound {bound:.1e}: {samples} samples in {rounds} rounds, error {:.4}, with gradients {:.4}",
-                plain?.0, gradients?.0
-            );
-        }
-        Ok(())
-    }
-}
-
-/// A square matrix of coloured blocks before the figure, near its hands and face (figure 4.1).
-fn block_matrix(low: DVec3, high: DVec3) -> Vec<Triangle> {
-    let (size, middle) = (high - low, 0.5 * (low + high));
-    let colours = [
-        DVec3::new(1.0, 0.1, 0.1),
-        DVec3::new(0.1, 1.0, 0.1),
-        DVec3::new(0.1, 0.2, 1.0),
-        DVec3::new(1.0, 0.9, 0.2),
-    ];
-    let at = |i: usize| i as f64 / 2.0 - 0.5;
-    let place = |i: usize| {
-        DVec3::new(middle.x + at(i % 3) * size.x, middle.y + at(i / 3) * size.y, high.z + 0.12 * size.y)
-    };
-    let half = DVec3::splat(0.06 * size.y);
-    (0..9).flat_map(|i| block(place(i), half, 10.0 * colours[(i + i / 3) % 4])).collect()
-}
-
-/// Two large planes and three blocks in red, white and green near walls and floor (figure 4.4, "near").
-fn near(low: DVec3, high: DVec3) -> Vec<Triangle> {
-    let at = |x: f64, y: f64, z: f64| low + DVec3::new(x, y, z) * (high - low);
-    let unit = 0.02 * (high - low).max_element();
-    let planes = [at(0.5, 1.2, 0.3), at(0.5, 1.2, 0.7)];
-    let planes = planes.map(|place| block(place, unit * DVec3::new(5.0, 0.01, 5.0), DVec3::splat(1.0)));
-    let lamps =
-        [(at(0.2, 0.25, 0.3), DVec3::X), (at(0.5, 0.3, 0.6), DVec3::ONE), (at(0.8, 0.25, 0.8), DVec3::Y)];
-    let lamps = lamps.map(|(place, colour)| block(place, DVec3::splat(unit), 8.0 * colour));
-    planes.into_iter().chain(lamps).flatten().collect()
-}
-
-/// Three large planes, a hundred sizes away (figure 4.4, "far").
-fn far(low: DVec3, high: DVec3) -> Vec<Triangle> {
-    let size = (high - low).length();
-    let place = |axis: usize| 0.5 * (low + high) + 100.0 * size * DVec3::AXES[axis];
-    (0..3)
-        .flat_map(|axis| {
-            block(place(axis), 30.0 * size * (DVec3::ONE - 0.99 * DVec3::AXES[axis]), DVec3::ONE)
-        })
-        .collect()
-}
+/// As the thesis has it, whose oracle believes what a sample sees.
+const BELIEVING: f64 = 0.0;
 
 fn main() -> Result<(), Failure> {
+    let fixture = fixture_with(&Radiance::requirements(&PassSettings::default()));
+    let run = |record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>| {
+        fixture.device().run(fixture.context(), |recorder| record(recorder))
+    };
+    let bench = Bench { context: fixture.context(), run: &run };
     let chosen: Vec<String> = std::env::args().skip(1).collect();
     let wanted = |name: &str| chosen.is_empty() || chosen.iter().any(|word| word == name);
-    if wanted("armadillo")
-        && let Some(case) = Case::new("mesh/armadillo_10k.glb", 128, block_matrix)?
-    {
-        case.table(&[130, 250])?;
-        case.sweep(&[0.1, 0.03, 0.01, 0.003, 0.001])?;
+    if wanted("armadillo") {
+        let data = Some("mesh/armadillo_10k.glb");
+        with_lab(&bench, "armadillo", data, 32, |lab| compare(lab, &[130, 250]))?;
     }
-    if wanted("nave")
-        && let Some(mut case) = Case::new("mesh/nave.glb", 64, near)?
-    {
-        case.table(&[160, 500])?;
-        let bound = 2e-3;
-        let settings = Settings { bound, ..Settings::default() };
-        let near = case.refine(&settings)?.samples.len();
-        let box_of = case.tree.nodes().first().copied().unwrap_or_default();
-        let corner = |corner: [f32; 3]| DVec3::from(corner.map(f64::from));
-        case.emitters = far(corner(box_of.low), corner(box_of.high));
-        let far = case.refine(&settings)?.samples.len();
-        println!("  bound {bound:.1e}: near {near} samples, far {far}");
+    if wanted("nave") {
+        with_lab(&bench, "nave-near", None, 16, |lab| {
+            compare(lab, &[160, 500])?;
+            near_and_far(lab)
+        })?;
     }
-    if wanted("buddha")
-        && let Some(case) = Case::new("mesh/buddha_50k.glb", 64, block_matrix)?
-    {
-        case.sweep(&[0.1, 0.03, 0.01, 0.003, 0.001])?;
+    for name in ["buddha", "buddha-fine"] {
+        if wanted(name) {
+            with_lab(&bench, name, Some("mesh/buddha_50k.glb"), 16, bounds)?;
+        }
     }
     Ok(())
+}
+
+fn with_lab(
+    bench: &Bench<'_>,
+    name: &str,
+    data: Option<&str>,
+    face: u32,
+    run: impl Fn(&Lab<'_>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let Some(placed) = Placed::load(name, data)? else { return Ok(()) };
+    let (lab, seconds) = Lab::new(bench, &placed, face)?;
+    let (vertices, triangles) = (placed.positions.len(), placed.emitters.len());
+    println!(
+        "{name}: {vertices} vertices, {triangles} emitter triangles, faces of {face} texels with 4 x 4 rays"
+    );
+    println!("  a sample at each vertex: {seconds:.2} s of sampling");
+    run(&lab)
+}
+
+/// Tables 4.1 and 4.2: the pass, the thesis's own method and even samples, at about as many samples.
+fn compare(lab: &Lab<'_>, counts: &[usize]) -> Result<(), Failure> {
+    for &count in counts {
+        let even = lab.even(count)?;
+        let mut rivals = Vec::new();
+        for power in [1, 2, 4] {
+            let outcome = lab.rival(&even, power)?;
+            print(&format!("even, 1/d^{power}"), &outcome);
+            rivals.push(outcome);
+        }
+        for (name, oracle) in
+            [("thesis, eq. 3.3 as printed", Oracle::Printed), ("thesis, eq. 3.3 as argued", Oracle::Argued)]
+        {
+            let settings = Settings { oracle, stride: 1, hidden: BELIEVING, ..Settings::default() };
+            let settings = lab.settings_for(count, settings)?;
+            let refined = lab.refined(settings, false)?;
+            let (samples, error) = (refined.samples.len(), lab.inverse(&refined)?);
+            println!("  {name:30} {samples:5} samples, error {error:.4}, weighed on the CPU");
+        }
+        for (name, hidden) in [("ours, as the thesis", BELIEVING), ("ours", Settings::default().hidden)] {
+            let settings = lab.settings_for(count, Settings { hidden, ..Settings::default() })?;
+            for gradients in [false, true] {
+                let with = if gradients { ", gradients" } else { "" };
+                let outcome = lab.pass(settings, gradients)?;
+                print(&format!("{name}{with}, bound {:.1e}", settings.bound), &outcome);
+                let errors: Vec<_> =
+                    rivals.iter().map(|rival| format!("{:.2}", outcome.error / rival.error)).collect();
+                let times = rivals[1].reconstruction / outcome.reconstruction;
+                println!(
+                    "      {} of the even ones' errors; vertices {times:.1} times as fast",
+                    errors.join(", ")
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Table 4.3: samples of one bound for near emitters and for far ones.
+fn near_and_far(lab: &Lab<'_>) -> Result<(), Failure> {
+    let Some(far) = Placed::load("nave-far", None)? else { return Ok(()) };
+    let settings = Settings { bound: 1e-3, limit: 1 << 14, ..Settings::default() };
+    let near = lab.pass(settings, true)?;
+    print("near, bound 1e-3", &near);
+    println!("  far, the same bound: {} samples", lab.samples_for(&far.emitters, settings)?);
+    Ok(())
+}
+
+/// Table 4.4: error against bound, over two decades.
+fn bounds(lab: &Lab<'_>) -> Result<(), Failure> {
+    for bound in [0.1, 0.03, 0.01, 0.003, 0.001] {
+        let settings = Settings { bound, limit: 1 << 14, ..Settings::default() };
+        print(&format!("bound {bound:.0e}, gradients"), &lab.pass(settings, true)?);
+    }
+    Ok(())
+}
+
+fn print(name: &str, outcome: &Outcome) {
+    let Outcome { samples, limited, error, sampling, reconstruction } = outcome;
+    let limited = if *limited { " (stopped by the limit)" } else { "" };
+    println!(
+        "  {name:36} {samples:5} samples{limited}, error {error:.4}, sampling {sampling:.3} s, vertices {:.1} ms",
+        1e3 * reconstruction
+    );
 }

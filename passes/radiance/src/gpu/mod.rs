@@ -1,6 +1,7 @@
 //! The room on a device: light sampled by kernels, and where they leave it.
 
 pub mod bench;
+mod global;
 pub mod kernels;
 mod layout;
 mod read;
@@ -9,6 +10,7 @@ mod texels;
 pub mod tree;
 pub mod vertices;
 
+pub use global::{GLOBAL_BINDINGS, Global, GlobalWork};
 pub use layout::{Batch, EmitterTriangle, LightShape};
 pub use refinement::{RefineState, Refinement, SampleBuffers};
 pub use texels::{TexelBuffers, TexelSettings, Texels};

@@ -24,7 +24,8 @@ use crate::report::relight::workload::{Effort, Workload};
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   airglow explain relight assets/scenes/spot.toml
-  airglow explain fog assets/scenes/street.toml")]
+  airglow explain fog assets/scenes/street.toml
+  airglow explain radiance assets/scenes/blocks.toml")]
 pub struct Arguments {
     /// The pass.
     #[arg(value_enum)]
@@ -77,6 +78,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     if arguments.pass == Pass::Fog {
         return fog(&scene, global, output);
     }
+    #[cfg(feature = "radiance")]
+    if arguments.pass == Pass::Radiance {
+        return radiance(&scene, &arguments.scene.cache, global, output);
+    }
     if scene.environment.is_none() {
         let left_out = lighting::no_environment(lighting::relight_bytes(&scene), None);
         return output.result(&left_out, left_out_text);
@@ -118,6 +123,29 @@ fn fog(scene: &Scene, global: &Global, output: &Output) -> Outcome {
         Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
     })?;
     output.result(&explanation, |explanation| text(explanation, None))
+}
+
+/// The knobs of near emitters, none of which a scene file names but the order.
+#[cfg(feature = "radiance")]
+fn radiance(scene: &Scene, cache: &std::path::Path, global: &Global, output: &Output) -> Outcome {
+    use crate::host::near;
+    use crate::report::radiance::{Effort, Measurement, Workload};
+    if let Some(left_out) = near::left_out(scene, false) {
+        return output.result(&left_out, left_out_text);
+    }
+    let explanation = device::with(global, &near::measured_requirements(), |device| {
+        let workload = Workload::new(device, scene, cache, output)?;
+        let measurement = Measurement { device, workload: &workload, effort: Effort::new(true), output };
+        let shipped =
+            |curve: &Curve| curve.chosen.as_ref().map_or(String::new(), |chosen| chosen.setting.clone());
+        let knobs = measurement.knobs()?.into_iter().map(|curve| {
+            let setting = shipped(&curve);
+            knob(curve, setting, "the pass's default".to_owned())
+        });
+        let (machine, workload) = (device.machine(), workload.description.clone());
+        Ok(Explanation { machine, workload, knobs: knobs.collect() })
+    })?;
+    output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
 }
 
 fn left_out_text(left_out: &LeftOut) -> String {

@@ -15,6 +15,8 @@ use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
+#[cfg(feature = "radiance")]
+use crate::host::strip;
 #[cfg(feature = "fog")]
 use crate::host::{airs, complete::Road};
 use crate::host::{device, truth};
@@ -37,6 +39,7 @@ use crate::output::Output;
   airglow render assets/scenes/demo.toml -o both.png --without relight --split
   airglow render assets/scenes/demo.toml -o pair.png --views 2
   airglow render assets/scenes/street.toml -o airs.png --compare-fog --size 640x540
+  airglow render assets/scenes/lamp.toml -o lamp.png --strip 5 --size 320x360
   airglow render assets/scenes/grooves.toml -o truth.png --maps texels --samples 4 --passes 64
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
@@ -96,6 +99,10 @@ pub struct Arguments {
     #[cfg(feature = "fog")]
     #[arg(long, conflicts_with = "without")]
     compare_fog: bool,
+    /// Draw so many pictures side by side, while the emitters of the scene move from `center` to `to`.
+    #[cfg(feature = "radiance")]
+    #[arg(long, value_name = "PICTURES", value_parser = clap::value_parser!(u32).range(2..=16), conflicts_with_all = ["without", "passes", "reference", "spin"])]
+    strip: Option<u32>,
     /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass.
     #[arg(long, conflicts_with = "without")]
     reference: bool,
@@ -178,6 +185,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             write_trace(path, device, &picture)?;
         }
         let mut stat = Stat::new(device, &settings, &picture, cost);
+        #[cfg(feature = "radiance")]
+        {
+            stat.near = renderer.near_stat(&settings)?;
+        }
         for health in renderer.health() {
             stat.health.extend(health::collect(device, health)?);
         }
@@ -213,6 +224,10 @@ impl Arguments {
     /// The frames asked for; `settings` become those of the last.
     fn picture(&self, renderer: &mut Renderer<'_>, settings: &mut Settings) -> Outcome<Picture> {
         let frames = self.frames as usize;
+        #[cfg(feature = "radiance")]
+        if let Some(moments) = self.strip {
+            return strip::of_moving_emitters(renderer, settings, moments, frames);
+        }
         #[cfg(feature = "fog")]
         if self.compare_fog {
             return airs::side_by_side(renderer, settings, frames);

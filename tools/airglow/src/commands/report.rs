@@ -30,6 +30,7 @@ use crate::report::write;
   airglow report relight -o out/report
   airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
   airglow report fog -o out/fog
+  airglow report radiance -o out/radiance
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
 pub struct Arguments {
@@ -37,7 +38,7 @@ pub struct Arguments {
     #[arg(value_enum, default_value_t = Pass::Relight)]
     pass: Pass,
     /// The scene to light: a scene file or a glTF file. For relight assets/scenes/spot.toml unless given, for fog
-    /// assets/scenes/street.toml.
+    /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
@@ -62,6 +63,9 @@ pub enum Pass {
     /// Single scattering from lights inside a medium.
     #[cfg(feature = "fog")]
     Fog,
+    /// Incident radiance of near emitters.
+    #[cfg(feature = "radiance")]
+    Radiance,
 }
 
 impl Pass {
@@ -71,6 +75,8 @@ impl Pass {
             Self::Relight => "assets/scenes/spot.toml",
             #[cfg(feature = "fog")]
             Self::Fog => "assets/scenes/street.toml",
+            #[cfg(feature = "radiance")]
+            Self::Radiance => "assets/scenes/blocks.toml",
         }
     }
 
@@ -79,6 +85,8 @@ impl Pass {
             Self::Relight => "relight",
             #[cfg(feature = "fog")]
             Self::Fog => "fog",
+            #[cfg(feature = "radiance")]
+            Self::Radiance => "radiance",
         }
     }
 }
@@ -96,6 +104,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Pass::Relight => relight(arguments, global, output)?,
             #[cfg(feature = "fog")]
             Pass::Fog => fog(arguments, global, output)?,
+            #[cfg(feature = "radiance")]
+            Pass::Radiance => radiance(arguments, global, output)?,
         }]
     } else {
         let read = arguments.merge.iter().map(|path| write::read(path)).collect::<Outcome<Vec<_>>>()?;
@@ -124,6 +134,30 @@ fn fog(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Repor
             remarks: measured.remarks,
             curves: measured.curves,
             numbers: measured.numbers,
+        })
+    })
+}
+
+/// The report on near emitters.
+#[cfg(feature = "radiance")]
+fn radiance(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    use crate::report::radiance::{Effort, Measurement, Workload};
+    let options = SceneOptions::plain(&arguments.scene(), None);
+    let scene = options.load(output)?;
+    device::with(global, &crate::host::near::measured_requirements(), |device| {
+        let workload = Workload::new(device, &scene, &options.cache, output)?;
+        let effort = Effort::new(arguments.quick);
+        let measurement = Measurement { device, workload: &workload, effort, output };
+        let (curves, numbers) = measurement.all()?;
+        Ok(Report {
+            pass: "radiance".to_owned(),
+            machine: device.machine(),
+            command: command(arguments, &device.machine()),
+            date: today(),
+            workload: workload.description.clone(),
+            remarks: measurement.remarks(),
+            curves,
+            numbers,
         })
     })
 }

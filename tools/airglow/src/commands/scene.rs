@@ -12,6 +12,9 @@ use crate::output::Output;
 /// Where bakes are kept, unless told otherwise.
 const CACHE: &str = ".cache/airglow";
 
+/// The variable that names the folder of files that scene files name `data:…`.
+const DATA: &str = "AIRGLOW_DATA";
+
 /// A scene, and what its light transport is computed with.
 #[derive(Clone, Debug, Args)]
 pub struct SceneOptions {
@@ -74,7 +77,9 @@ impl SceneOptions {
 
     /// Loads the scene, repeats its warnings, and applies the options that override it.
     pub fn load(&self, output: &Output) -> Outcome<Scene> {
-        let mut scene = airglow_scene::load(&self.scene).map_err(Failure::input)?;
+        let data = std::env::var_os(DATA).map(PathBuf::from);
+        let mut scene =
+            airglow_scene::load_with_data(&self.scene, data.as_deref()).map_err(Failure::input)?;
         for warning in scene.warnings.iter().map(ToString::to_string).chain(unread::warnings(&scene)) {
             output.warn(warning);
         }
@@ -90,7 +95,7 @@ impl SceneOptions {
             scene.environment = Some(airglow_scene::Environment { distance, ..environment });
         }
         #[cfg(all(feature = "radiance", feature = "relight"))]
-        crate::host::near::place(&mut scene);
+        crate::host::emitters::place(&mut scene);
         let endless = scene.environment.as_ref().is_some_and(|environment| environment.distance.is_none());
         if endless && scene.medium.is_some() {
             output.warn(

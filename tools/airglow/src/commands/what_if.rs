@@ -9,17 +9,20 @@ use serde::Serialize;
 use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
+#[cfg(feature = "radiance")]
+use crate::host::emitters;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Renderer, Settings};
 use crate::output::Output;
 
 /// Every key and what it takes.
-const KEYS: [(&str, &str); 10] = [
+const KEYS: [(&str, &str); 11] = [
     ("order", "1 to 6"),
     ("storage", "f32 or f16"),
     ("shadow", "scene, object or unshadowed"),
     ("environment", "none or a file (.exr, .hdr)"),
     ("medium", "none"),
+    ("emitters", "none"),
     ("relight", "on or off"),
     ("fog", "on or off"),
     ("views", "1 to 8"),
@@ -84,6 +87,8 @@ fn apply(change: &str, scene: &mut Scene, settings: &mut Settings) -> Outcome {
         ("shadow", _) => shadow(value).map(|shadow| scene.quality.shadow = shadow),
         ("environment", _) => environment(value)?.map(|environment| scene.environment = environment),
         ("medium", _) => (value == "none").then(|| scene.medium = None),
+        #[cfg(feature = "radiance")]
+        ("emitters", _) => (value == "none").then(|| emitters::remove(scene)),
         ("relight", _) => switch(value).map(|on| settings.without_relight = !on),
         ("fog", _) => switch(value).map(|on| settings.air = Air::with_fog(on)),
         ("views", _) => whole(value, 8).map(|views| settings.views = views),

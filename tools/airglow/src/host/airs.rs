@@ -3,6 +3,7 @@
 use airglow_scene::FloatImage;
 
 use super::renderer::{Air, Picture, Renderer, Settings};
+use super::strip::joined;
 use crate::failure::Outcome;
 
 /// Depth fog with the colour that an artist would match to the fog pass: the mean of its picture as an eye takes it, of
@@ -17,18 +18,11 @@ pub fn side_by_side(renderer: &mut Renderer<'_>, settings: &Settings, frames: us
     let depth_fog = depth_fog(renderer, settings)?;
     let clear = renderer.draw(&Settings { air: Air::Clear, ..*settings }, 1)?;
     let depth_fog = renderer.draw(&Settings { air: depth_fog, ..*settings }, 1)?;
-    let mut fog = renderer.draw(&Settings { air: Air::Fog, ..*settings }, frames)?;
-    let display = join([&clear.display, &depth_fog.display, &fog.display], fog.linear.width);
-    let pixels = join([&clear.linear.pixels, &depth_fog.linear.pixels, &fog.linear.pixels], fog.linear.width);
-    fog.linear = FloatImage { width: 3 * fog.linear.width, height: fog.linear.height, pixels };
-    fog.display = display;
-    Ok(fog)
-}
-
-/// Rows of `width` pixels of each picture behind one another.
-fn join<P: Copy>(pictures: [&[P]; 3], width: usize) -> Vec<P> {
-    let [left, middle, right] = pictures.map(|pixels| pixels.chunks_exact(width));
-    left.zip(middle).zip(right).flat_map(|((a, b), c)| [a, b, c].concat()).collect()
+    let fog = renderer.draw(&Settings { air: Air::Fog, ..*settings }, frames)?;
+    let pictures = [clear, depth_fog, fog];
+    let (linear, display) = joined(&pictures);
+    let [.., fog] = pictures;
+    Ok(Picture { linear, display, ..fog })
 }
 
 /// The geometric mean of a picture.
@@ -38,17 +32,4 @@ fn mean(picture: &FloatImage) -> [f32; 3] {
         let sum: f64 = picture.pixels.iter().map(|pixel| f64::from(pixel[c].max(1e-6)).ln()).sum();
         (sum / count).exp() as f32
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_stand_side_by_side() {
-        assert_eq!(
-            join([&[1, 2, 3, 4], &[5, 6, 7, 8], &[9, 0, 1, 2]], 2),
-            [1, 2, 5, 6, 9, 0, 3, 4, 7, 8, 1, 2]
-        );
-    }
 }

@@ -10,6 +10,8 @@ use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexCol
 #[cfg(feature = "fog")]
 use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
+#[cfg(feature = "radiance")]
+use super::near::Arrival;
 use super::renderer::{Renderer, Settings};
 use super::sky::{Behind, Glow};
 use super::view::SharedView;
@@ -88,7 +90,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             #[cfg(feature = "radiance")]
             if let Some(emitters) = &lit.near {
                 // Near emitters first make the light of each vertex, the environment's with it.
-                let sampled = emitters.add(&mut graph, &mut imports, settings.turn)?;
+                let arrival = Arrival { turn: settings.turn, filter: filter.as_deref() };
+                let sampled = emitters.add(&mut graph, &mut imports, arrival)?;
                 frame.light = if sampled.light.is_empty() { Light::None } else { Light::Vertices };
                 let lights = frame.instances.iter_mut().zip(sampled.light);
                 lights.for_each(|(instance, light)| instance.light = Some(light));
@@ -200,14 +203,14 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
 /// What a medium before the environment does to the bands of its light, where there is one.
 #[cfg(feature = "fog")]
-fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec<[f64; 3]>> {
+pub(super) fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec<[f64; 3]>> {
     let fog = renderer.fog.as_ref().filter(|_| settings.air.is_fog())?;
     Some(fog.sky.as_ref()?.factors.clone())
 }
 
 /// There is no fog.
 #[cfg(not(feature = "fog"))]
-fn filter(_: &Renderer<'_>, _: &Settings) -> Option<Vec<[f64; 3]>> {
+pub(super) fn filter(_: &Renderer<'_>, _: &Settings) -> Option<Vec<[f64; 3]>> {
     None
 }
 

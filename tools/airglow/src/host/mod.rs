@@ -2,7 +2,7 @@
 //!
 //! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
 //! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws, `lights`, `fog`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near emitters;
+//! draws, `lights`, `fog`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near `emitters`;
 //! `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
@@ -15,6 +15,8 @@ pub mod depth_fog;
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod emitters;
 pub mod environment_samples;
 #[cfg(feature = "relight")]
 pub mod filter;
@@ -42,6 +44,8 @@ pub mod settings;
 pub mod shaders;
 #[cfg(feature = "relight")]
 pub mod sky;
+#[cfg(all(feature = "relight", any(feature = "fog", feature = "radiance")))]
+pub mod strip;
 pub mod texture;
 pub mod transfer;
 pub mod truth;

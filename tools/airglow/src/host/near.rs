@@ -1,24 +1,30 @@
-//! The scene's near emitters: as things that are drawn, and as light of each vertex by the radiance pass.
+//! Light of the scene's near emitters at each vertex, by the radiance pass.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use airglow::math::sh::rotation::Rotation;
 use airglow::math::sphere::equirect::Projector;
+use airglow::radiance::gpu::RefineState;
+use airglow::radiance::gpu::bench::Bench;
 use airglow::radiance::{
     Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Triangle,
 };
 use airglow_gpu::{Context, Imports, Record, Requirements};
-use airglow_graph::Graph;
-use airglow_scene::{Emitter, EmitterShape, Environment, Instance, Material, Mesh, Scene};
-use glam::{DMat3, DQuat, DVec3, Mat4, Vec3};
+use airglow_graph::{Graph, LeftOut};
+use airglow_scene::{Emitter, Environment, Scene};
+use glam::{DMat3, DQuat, Mat4};
 
+use super::device::Device;
+use super::emitters;
+use super::lighting::Lighting;
+use super::renderer::{Renderer, Settings as FrameSettings};
 use super::transfer::SceneTransfer;
 use crate::failure::{Failure, Outcome};
+use crate::measure::near::NearStat;
 
-/// Cube maps of 16 texels see emitters of a few degrees by four rays a texel.
-const FACE: u32 = 16;
 /// Error of a vertex colour that samples aim at, W/sr/m2 before exposure.
-const BOUND: f64 = 2e-3;
+pub const BOUND: f64 = 2e-3;
 
 /// Bands that samples can have.
 const ORDERS: std::ops::RangeInclusive<u32> = 3..=6;
@@ -27,16 +33,59 @@ const ORDERS: std::ops::RangeInclusive<u32> = 3..=6;
 pub struct NearLight {
     radiance: Radiance,
     receiver: Receiver,
-    emitters: Vec<Triangle>,
+    emitters: Vec<Emitter>,
+    triangles: Vec<Triangle>,
     /// The environment about the world's axes where it is not turned.
     distant: Vec<[f64; 3]>,
     order: usize,
 }
 
+/// How the environment reaches the vertices of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival<'a> {
+    /// Turns it about the world's axes.
+    pub turn: DQuat,
+    /// What a medium before it does to its bands; `None` in clear air.
+    pub filter: Option<&'a [[f64; 3]]>,
+}
+
+/// What is lit, placed in the world.
+pub struct Placed {
+    /// Metres.
+    pub positions: Vec<[f32; 3]>,
+    /// Transfer vectors of as many bands as the scene's quality says, each about the axes of its part.
+    pub vectors: Vec<f32>,
+    /// The instances.
+    pub parts: Vec<Part>,
+}
+
 /// Whether the pass lights a scene.
 pub fn is_drawn(scene: &Scene) -> bool {
+    glows(scene) && ORDERS.contains(&scene.quality.order)
+}
+
+fn glows(scene: &Scene) -> bool {
     let glows = |emitter: &Emitter| emitter.radiance.iter().any(|x| *x > 0.0);
-    scene.emitters.iter().any(glows) && ORDERS.contains(&scene.quality.order)
+    scene.emitters.iter().any(glows)
+}
+
+/// The record of the pass being left out of a scene; what it does not know, black receivers, it says itself.
+pub fn left_out(scene: &Scene, without_relight: bool) -> Option<LeftOut> {
+    let (why, would_return) = match (glows(scene), ORDERS.contains(&scene.quality.order)) {
+        (false, _) => ("the scene has no emitter that gives light", "an [[emitter]] in the scene file"),
+        (true, false) => ("it has no kernels of so many bands", "3 to 6 bands"),
+        (true, true) if without_relight => ("relight, which takes its light, is left out", "relight"),
+        (true, true) => return None,
+    };
+    let vertices: usize =
+        scene.instances.iter().map(|instance| scene.meshes[instance.mesh].positions.len()).sum();
+    Some(LeftOut {
+        what: "radiance".to_owned(),
+        why: why.to_owned(),
+        bytes: vertices as u64 * settings(scene).light_bytes(),
+        time: None,
+        would_return: would_return.to_owned(),
+    })
 }
 
 /// What the device must offer for a scene.
@@ -47,100 +96,42 @@ pub fn requirements(scene: &Scene) -> Requirements {
     }
 }
 
+/// What the device must offer to measure the pass at any of its orders.
+pub fn measured_requirements() -> Requirements {
+    Radiance::requirements(&PassSettings { order: *ORDERS.end() as usize, ..PassSettings::default() })
+}
+
 fn settings(scene: &Scene) -> PassSettings {
     let refinement = Settings { bound: BOUND, ..Settings::default() };
-    let order = scene.quality.order as usize;
-    PassSettings { order, face: FACE, rays: 4, refinement, ..PassSettings::default() }
+    PassSettings { order: scene.quality.order as usize, refinement, ..PassSettings::default() }
 }
 
-/// Puts every emitter into the scene as a mesh that glows and reflects nothing, after all other instances.
-pub fn place(scene: &mut Scene) {
-    for emitter in &scene.emitters {
-        let (positions, indices) = shape(emitter);
-        let middle = Vec3::from(emitter.center);
-        let normals = positions.iter().map(|p| (Vec3::from(*p) - middle).normalize_or(Vec3::Y).to_array());
-        let mut mesh = Mesh {
-            name: emitter.name.clone(),
-            normals: normals.collect(),
-            positions,
-            tangents: Vec::new(),
-            uv0: Vec::new(),
-            joints: Vec::new(),
-            weights: Vec::new(),
-            indices,
-            material: scene.materials.len(),
-            hash: Default::default(),
-        };
-        mesh.hash = mesh.content_hash();
-        scene.materials.push(Material {
-            name: emitter.name.clone(),
-            base_color: [0.0, 0.0, 0.0, 1.0],
-            emissive: emitter.radiance,
-            ..Material::default()
-        });
-        scene.instances.push(Instance {
-            name: emitter.name.clone(),
-            mesh: scene.meshes.len(),
-            node: 0,
-            skin: None,
-            transform: Mat4::IDENTITY,
-            material: mesh.material,
-        });
-        scene.meshes.push(mesh);
-    }
-}
-
-/// Positions in the world and triangles of an emitter: the twelve of a box, eighty of a sphere.
-fn shape(emitter: &Emitter) -> (Vec<[f32; 3]>, Vec<u32>) {
-    let middle = Vec3::from(emitter.center);
-    let corners = |size: Vec3| {
-        let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5;
-        (0..8).map(|i| middle + size * corner(i)).collect::<Vec<_>>()
-    };
-    match emitter.shape {
-        EmitterShape::Box { size } => {
-            let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-            let indices = sides.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect();
-            (corners(Vec3::from(size)).iter().map(|p| p.to_array()).collect(), indices)
+impl Placed {
+    /// All instances of a scene with their transfer; emitters reflect nothing.
+    pub fn new(scene: &Scene, transfer: &SceneTransfer) -> Self {
+        let (mut positions, mut vectors, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+        let surfaces = emitters::surfaces(scene);
+        for (index, (instance, lit)) in scene.instances.iter().zip(&transfer.instances).enumerate() {
+            let first = positions.len() as u32;
+            let place = |p: &[f32; 3]| instance.transform.transform_point3((*p).into()).to_array();
+            positions.extend(scene.meshes[instance.mesh].positions.iter().map(place));
+            let baked = &transfer.transfers[lit.transfer].coefficients;
+            match index < surfaces {
+                true => vectors.extend_from_slice(baked),
+                false => vectors.resize(vectors.len() + baked.len(), 0.0),
+            }
+            let side = if lit.inverted { -1.0 } else { 1.0 };
+            let turn = side * DMat3::from_quat(lit.rotation.conjugate());
+            parts.push(Part { vertices: first..positions.len() as u32, turn: Some(turn) });
         }
-        EmitterShape::Sphere { radius } => sphere(middle, radius),
+        Self { positions, vectors, parts }
     }
-}
 
-/// An octahedron whose sides are parted in four twice, its corners on the sphere.
-fn sphere(middle: Vec3, radius: f32) -> (Vec<[f32; 3]>, Vec<u32>) {
-    let mut triangles: Vec<[Vec3; 3]> = (0..8)
-        .map(|i: u32| {
-            let sign = |bit: u32| if i >> bit & 1 == 0 { 1.0 } else { -1.0 };
-            let [x, y, z] = [Vec3::X * sign(0), Vec3::Y * sign(1), Vec3::Z * sign(2)];
-            if x.cross(y).dot(z) > 0.0 { [x, y, z] } else { [x, z, y] }
-        })
-        .collect();
-    for _ in 0..2 {
-        triangles = triangles
-            .iter()
-            .flat_map(|&[a, b, c]| {
-                let [d, e, f] = [a + b, b + c, c + a].map(Vec3::normalize);
-                [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
-            })
-            .collect();
+    /// The tree over the vertices.
+    pub fn tree(&self) -> Outcome<Hierarchy> {
+        Hierarchy::build(&self.positions, &self.vectors, &mut |_, _| ControlFlow::Continue(()))
+            .map_err(Failure::work)
     }
-    let positions: Vec<_> = triangles.iter().flatten().map(|p| (middle + radius * *p).to_array()).collect();
-    let indices = (0..positions.len() as u32).collect();
-    (positions, indices)
-}
-
-/// The triangles of all emitters, in the world.
-fn triangles(scene: &Scene) -> Vec<Triangle> {
-    let emitted = |emitter: &Emitter| {
-        let (positions, indices) = shape(emitter);
-        let corner = |i: &u32| DVec3::from(positions[*i as usize].map(f64::from));
-        let radiance = DVec3::from(emitter.radiance.map(f64::from));
-        let triangle =
-            |i: &[u32]| Triangle { corners: [corner(&i[0]), corner(&i[1]), corner(&i[2])], radiance };
-        indices.chunks_exact(3).map(triangle).collect::<Vec<_>>()
-    };
-    scene.emitters.iter().flat_map(emitted).collect()
 }
 
 impl NearLight {
@@ -150,54 +141,100 @@ impl NearLight {
             return Ok(None);
         }
         let settings = settings(scene);
-        let (mut positions, mut vectors, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let drawn = scene.instances.len() - scene.emitters.len();
-        for (index, (instance, lit)) in scene.instances.iter().zip(&transfer.instances).enumerate() {
-            let first = positions.len() as u32;
-            let place = |p: &[f32; 3]| instance.transform.transform_point3((*p).into()).to_array();
-            positions.extend(scene.meshes[instance.mesh].positions.iter().map(place));
-            let baked = &transfer.transfers[lit.transfer].coefficients;
-            match index < drawn {
-                true => vectors.extend_from_slice(baked),
-                // An emitter reflects nothing.
-                false => vectors.resize(vectors.len() + baked.len(), 0.0),
-            }
-            let side = if lit.inverted { -1.0 } else { 1.0 };
-            let turn = side * DMat3::from_quat(lit.rotation.conjugate());
-            parts.push(Part { vertices: first..positions.len() as u32, turn: Some(turn) });
-        }
-        let mut progress = |_, _| ControlFlow::Continue(());
-        let tree = Hierarchy::build(&positions, &vectors, &mut progress).map_err(Failure::work)?;
-        let receiver = Receiver::new(context, settings, &tree, &positions, &parts).map_err(Failure::work)?;
-        let radiance = Radiance::new(context, settings).map_err(Failure::work)?;
+        let placed = Placed::new(scene, transfer);
+        let receiver = Receiver::new(context, settings, &placed.tree()?, &placed.positions, &placed.parts)
+            .map_err(Failure::work)?;
         let distant = match &scene.environment {
             Some(environment) => distant(environment, settings.order)?,
             None => Vec::new(),
         };
-        Ok(Some(Self { radiance, receiver, emitters: triangles(scene), distant, order: settings.order }))
+        Ok(Some(Self {
+            radiance: Radiance::new(context, settings).map_err(Failure::work)?,
+            receiver,
+            emitters: scene.emitters.clone(),
+            triangles: emitters::triangles(&scene.emitters, 0.0),
+            distant,
+            order: settings.order,
+        }))
     }
 
-    /// Adds the pass; distant light is turned by `turn`.
-    pub fn add(&self, graph: &mut Graph<Record>, imports: &mut Imports, turn: DQuat) -> Outcome<Lit> {
-        let distant = self.turned(turn)?;
-        let lights = Lights { emitters: &self.emitters, distant: &distant };
+    /// Moves the emitters to `part` of their ways; frames declared before keep them where they were.
+    pub fn move_emitters(&mut self, part: f32) {
+        self.triangles = emitters::triangles(&self.emitters, part);
+    }
+
+    /// Adds the pass.
+    pub fn add(
+        &self,
+        graph: &mut Graph<Record>,
+        imports: &mut Imports,
+        arrival: Arrival<'_>,
+    ) -> Outcome<Lit> {
+        let distant = self.arriving(arrival)?;
+        let lights = Lights { emitters: &self.triangles, distant: &distant, ..Lights::default() };
         self.radiance.add(graph, imports, &self.receiver, &lights).map_err(Failure::work)
     }
 
     /// Turns the distant light of a declared frame.
-    pub fn turn(&self, control: &Control, turn: DQuat) -> Outcome {
-        let distant = self.turned(turn)?;
-        control.set(&Lights { emitters: &self.emitters, distant: &distant }).map_err(Failure::work)
+    pub fn turn(&self, control: &Control, arrival: Arrival<'_>) -> Outcome {
+        let distant = self.arriving(arrival)?;
+        control
+            .set(&Lights { emitters: &self.triangles, distant: &distant, ..Lights::default() })
+            .map_err(Failure::work)
     }
 
-    fn turned(&self, turn: DQuat) -> Outcome<Vec<[f32; 3]>> {
+    /// What the samples of the last frame took, once it is done.
+    pub fn stat(&self, device: &Device<'_>) -> Outcome<NearStat> {
+        let run = device.bench();
+        let bench = Bench { context: device.context(), run: &run };
+        let samples = self.receiver.samples();
+        let states: Vec<RefineState> = bench.read(&samples.state).map_err(Failure::work)?;
+        let lights: Vec<[f32; 4]> = bench.read(&samples.lights).map_err(Failure::work)?;
+        Ok(NearStat::new(states.first(), &lights, self.receiver.shape(), BOUND))
+    }
+
+    fn arriving(&self, Arrival { turn, filter }: Arrival<'_>) -> Outcome<Vec<[f32; 3]>> {
         if self.distant.is_empty() {
             return Ok(Vec::new());
         }
         let rotation = Rotation::from_quaternion(self.order, turn).map_err(Failure::work)?;
         let turned = rotation.apply_rgb(&self.distant).map_err(Failure::work)?;
-        Ok(turned.iter().map(|light| light.map(|x| x as f32)).collect())
+        Ok(filtered(&turned, filter))
     }
+}
+
+impl Renderer<'_> {
+    /// What the radiance pass sampled in the last frame drawn, where there is the pass.
+    pub fn near_stat(&self, settings: &FrameSettings) -> Outcome<Option<NearStat>> {
+        match &self.lighting {
+            Lighting::Relight(lit) if !settings.without_relight => {
+                lit.near.as_ref().map(|near| near.stat(self.device)).transpose()
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Moves the emitters to `part` of their ways, in what is drawn and in what lights it, for frames declared from now on.
+    pub fn move_emitters(&mut self, part: f32) {
+        let Lighting::Relight(lit) = &mut self.lighting else { return };
+        let Some(near) = &mut lit.near else { return };
+        near.move_emitters(part);
+        let draws = &mut Arc::make_mut(&mut self.scene).draws;
+        let first = draws.len().saturating_sub(near.emitters.len());
+        for (draw, emitter) in draws[first..].iter_mut().zip(&near.emitters) {
+            draw.material.place(Mat4::from_translation(emitters::offset(emitter, part)));
+        }
+    }
+}
+
+/// Coefficients with each band multiplied by its factor.
+fn filtered(light: &[[f64; 3]], filter: Option<&[[f64; 3]]>) -> Vec<[f32; 3]> {
+    let factor = |i: usize| filter.and_then(|factors| factors.get(i.isqrt())).copied().unwrap_or([1.0; 3]);
+    let scaled = |(i, l): (usize, &[f64; 3])| {
+        let factor = factor(i);
+        [0, 1, 2].map(|c| (factor[c] * l[c]) as f32)
+    };
+    light.iter().enumerate().map(scaled).collect()
 }
 
 /// The environment's coefficients about the world's axes.
@@ -206,4 +243,18 @@ fn distant(environment: &Environment, order: usize) -> Outcome<Vec<[f64; 3]>> {
     let light = projector.project(&environment.pixels).map_err(Failure::input)?;
     let rotation = Rotation::from_quaternion(order, environment.rotation.as_dquat());
     rotation.and_then(|rotation| rotation.apply_rgb(&light)).map_err(Failure::input)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_scales_bands() {
+        let light = vec![[1.0; 3]; 9];
+        let factors = [[1.0, 0.5, 0.0], [0.25; 3], [0.125; 3]];
+        let found = filtered(&light, Some(&factors));
+        assert_eq!((found[0], found[3], found[4]), ([1.0, 0.5, 0.0], [0.25; 3], [0.125; 3]));
+        assert_eq!(filtered(&light, None), vec![[1.0_f32; 3]; 9]);
+    }
 }

@@ -25,6 +25,8 @@ use super::lighting::{self, Lighting, Source};
 use super::lights::LightsConstants;
 #[cfg(feature = "normals")]
 use super::mapped::MappedMaterials;
+#[cfg(feature = "radiance")]
+use super::near::Arrival;
 use super::scene::{self, DeviceScene};
 pub use super::settings::{Air, Settings};
 use super::unread;
@@ -192,7 +194,7 @@ impl<'d> Renderer<'d> {
             lights: LightsConstants::of_scene(scene),
             #[cfg(feature = "fog")]
             fog,
-            unread: unread::unread(scene).into_iter().chain(about_maps).collect(),
+            unread: unread::of_frame(scene, source).into_iter().chain(about_maps).collect(),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
             linear,
@@ -260,7 +262,8 @@ impl<'d> Renderer<'d> {
         if let (Some(control), Lighting::Relight(lit)) = (&turning.near, &self.lighting)
             && let Some(near) = &lit.near
         {
-            near.turn(control, turn)?;
+            let filter = frame::filter(self, settings);
+            near.turn(control, Arrival { turn, filter: filter.as_deref() })?;
         }
         match (&turning.rotations, &self.environment, &self.lighting) {
             (Some(rotations), Some(map), Lighting::Relight(lit)) => {

@@ -12,6 +12,7 @@ use half::f16;
 use super::{texture, upload};
 
 /// Everything that the draws of a scene read and that does not change from frame to frame.
+#[derive(Clone)]
 pub struct DeviceScene {
     /// One for each instance of the scene.
     pub draws: Vec<Draw>,
@@ -20,6 +21,7 @@ pub struct DeviceScene {
 }
 
 /// The environment map and how it is sampled.
+#[derive(Clone)]
 pub struct Sky {
     /// RGBA32F, one mip.
     pub map: ImageView,
@@ -176,6 +178,12 @@ impl MaterialConstants {
     #[cfg(feature = "fog")]
     pub fn set_tables(&mut self, [diffuse, specular]: [u32; 2]) {
         self.flags = self.flags & 1 | (diffuse & 0xff) << 8 | specular << 16;
+    }
+
+    /// Puts what is drawn elsewhere.
+    #[cfg(feature = "radiance")]
+    pub fn place(&mut self, world_from_object: glam::Mat4) {
+        self.world_from_object = world_from_object.to_cols_array_2d();
     }
 
     fn new(world_from_object: glam::Mat4, material: &Material) -> Self {

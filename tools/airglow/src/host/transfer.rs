@@ -168,6 +168,16 @@ pub fn occluder<'a>(
     Occluder { mask, ..bake_mesh(scene, instance).occluder_at(transform) }
 }
 
+/// Instances that cast baked shadows, the first ones. Near emitters cast none: they may move, and their light comes from
+/// where their shadow would be.
+pub fn casters(scene: &Scene) -> usize {
+    #[cfg(all(feature = "radiance", feature = "relight"))]
+    let casters = super::emitters::surfaces(scene);
+    #[cfg(not(all(feature = "radiance", feature = "relight")))]
+    let casters = scene.instances.len();
+    casters
+}
+
 fn object_job<'a>(
     scene: &'a Scene,
     instance: usize,
@@ -192,7 +202,7 @@ fn world_job<'a>(
     let occluders = match shadow {
         Shadow::Unshadowed => Vec::new(),
         Shadow::Object => vec![placed(instance)],
-        Shadow::Scene => (0..scene.instances.len()).map(placed).collect(),
+        Shadow::Scene => (0..casters(scene)).map(placed).collect(),
     };
     let mesh = bake_mesh(scene, instance);
     let (mesh_name, instance_name) = (mesh.name, &scene.instances[instance].name);

@@ -26,11 +26,11 @@ pub fn of_scene(
 ) -> Outcome<Vec<Vec<[f32; 3]>>> {
     let holes = holes::of_scene(scene);
     let placed = |number| transfer::occluder(scene, number, scene.instances[number].transform, &holes);
-    let everything: Vec<_> = (0..scene.instances.len()).map(placed).collect();
+    let everything: Vec<_> = (0..transfer::casters(scene)).map(placed).collect();
     let one = |number| {
         let blockers = match scene.quality.shadow {
             Shadow::Unshadowed => &[],
-            Shadow::Object => &everything[number..=number],
+            Shadow::Object => everything.get(number..=number).unwrap_or_default(),
             Shadow::Scene => &everything[..],
         };
         let occluders = Occluders::build(blockers).map_err(Failure::input)?;

@@ -3,6 +3,9 @@
 use airglow_graph::LeftOut;
 use airglow_scene::{Material, Scene};
 
+#[cfg(feature = "relight")]
+use super::lighting::Source;
+
 /// Lights that a draw takes; further ones are left out.
 pub const MAX_LIGHTS: usize = 64;
 
@@ -43,7 +46,17 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
         .collect()
 }
 
-/// The same for people.
+/// The same, and which rooms have nothing to do for a scene that `source` lights.
+#[cfg(feature = "relight")]
+pub fn of_frame(scene: &Scene, source: &Source) -> Vec<LeftOut> {
+    #[cfg(feature = "radiance")]
+    let idle = super::near::left_out(scene, !matches!(source, Source::Relight(_)));
+    #[cfg(not(feature = "radiance"))]
+    let (idle, _) = (None, source);
+    unread(scene).into_iter().chain(idle).collect()
+}
+
+/// The same as [`unread`] for people.
 pub fn warnings(scene: &Scene) -> impl Iterator<Item = String> {
     unread(scene).into_iter().map(|left_out| format!("left out: {}; {}", left_out.what, left_out.why))
 }

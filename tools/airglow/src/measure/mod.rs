@@ -3,6 +3,8 @@
 pub mod health;
 #[cfg(feature = "fog")]
 pub mod lights;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod near;
 pub mod pass;
 pub mod profiler;
 pub mod stat;

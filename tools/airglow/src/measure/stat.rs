@@ -5,6 +5,8 @@ use serde::Serialize;
 use super::health::Count;
 #[cfg(feature = "fog")]
 use super::lights::LightStat;
+#[cfg(feature = "radiance")]
+use super::near::NearStat;
 use super::pass::{PassStat, counted};
 use super::profiler::ProfilerCost;
 use crate::host::device::Device;
@@ -33,6 +35,9 @@ pub struct Stat {
     /// Which lights the fog pass evaluates in each view.
     #[cfg(feature = "fog")]
     lights: Vec<LightStat>,
+    /// What the radiance pass sampled, where there is one.
+    #[cfg(feature = "radiance")]
+    pub near: Option<NearStat>,
     /// What the passes counted; with --health, where they have anything to count.
     pub health: Vec<Count>,
     /// Device memory by owner.
@@ -72,6 +77,8 @@ impl Stat {
             profiler,
             #[cfg(feature = "fog")]
             lights: picture.lights.clone(),
+            #[cfg(feature = "radiance")]
+            near: None,
             health: Vec::new(),
             memory: device
                 .context()
@@ -99,6 +106,8 @@ impl Stat {
         text.push_str(&self.profiler.as_ref().map_or(String::new(), ProfilerCost::text));
         #[cfg(feature = "fog")]
         text.extend(self.lights.iter().map(LightStat::line));
+        #[cfg(feature = "radiance")]
+        text.extend(self.near.iter().map(NearStat::line));
         text.extend(self.health.iter().map(Count::line));
         for owner in &self.memory {
             text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));

@@ -12,10 +12,12 @@ pub mod model;
 pub mod pareto;
 pub mod plot;
 pub mod ranking;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod radiance;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod sweep;
 pub mod table;
-#[cfg(all(feature = "fog", feature = "relight"))]
+#[cfg(all(any(feature = "fog", feature = "radiance"), feature = "relight"))]
 pub mod timed_plan;
 pub mod write;
