@@ -1,5 +1,6 @@
 //! This room inside a host with a device of its own, by both roads; on lesser devices; with narrow vectors.
 
+#[path = "gpu/host/mod.rs"]
 mod host;
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
+#[path = "gpu/host/mod.rs"]
 mod host;
 
 use std::sync::{Arc, Mutex};

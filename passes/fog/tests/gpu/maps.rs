@@ -1,7 +1,5 @@
 //! Maps of environments on the device.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
 use airglow_gpu::{Image, Label, Location};
 use airglow_graph::{Access, BufferDesc, ImageDesc, State};

@@ -1,10 +1,8 @@
 //! A zonal filter of the light: convolution about every direction, band by band, on its way to the vertices.
 
-mod host;
-
+use crate::host::{Numbers, length, wide, wide_rgb, with_bench};
 use airglow_relight::{Bench, Case, CaseLight, Orientation, Relight, RelightError, Settings, reference};
 use glam::DQuat;
-use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 const VERTICES: usize = 50;
 

@@ -1,12 +1,10 @@
 //! Mirrored instances share the transfer baked in object space: the light is rotated and its odd bands change sign.
 
-mod host;
-
+use crate::host::{Numbers, length, wide, wide_rgb, with_bench};
 use airglow_bake::{Mesh, unshadowed};
 use airglow_math::sh::reconstruct;
 use airglow_relight::{Case, CaseLight, Orientation, Relight, Settings, instance_rotation, reference};
 use glam::{DMat3, DQuat, DVec3, Mat3, Mat4};
-use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 /// Instances that mirror, turn and scale uniformly.
 fn mirrored() -> Vec<DMat3> {

@@ -1,7 +1,5 @@
 //! A host's shadow map within the airlight: absent by default, obeyed at each tap where there is one.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use airglow_fog::bench::{Ray, WALL, settings};
 use airglow_fog::reference::airlight::{Sight, airlight};
 use airglow_fog::{Bench, Fog, Light, Medium, Phase, Preset, Settings};

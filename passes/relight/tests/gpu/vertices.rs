@@ -1,16 +1,12 @@
 //! The kernels over vertices against the f64 reference: storages, orders, lights, visibility, both methods, chunks.
 
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
-
-mod host;
-
+use crate::host::falling::Falling;
+use crate::host::{Numbers, length, wide, wide_rgb, with_bench};
 use airglow_math::sh::product::TripleProduct;
 use airglow_relight::pack::ChunkLimits;
 use airglow_relight::{
     Bench, Case, CaseLight, LightKind, Method, Output, Relight, Settings, Storage, reference,
 };
-use host::falling::Falling;
-use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 /// A mesh and everything that can fall on it.
 struct Input {

@@ -1,15 +1,11 @@
 //! What may be needed is prepared ahead, on another thread; frames and changes of quality within it make no pipeline.
 
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
-
-mod host;
-
+use crate::host::{Numbers, with_bench};
 use airglow_relight::{
     Bench, Case, CaseLight, Envelope, LightKind, MAX_ORDER, Method, Output, Pipelines, Relight, RelightError,
     Settings, Storage,
 };
 use glam::DQuat;
-use host::{Numbers, with_bench};
 
 fn envelope() -> Envelope {
     Envelope {

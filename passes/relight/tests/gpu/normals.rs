@@ -1,9 +1,7 @@
 //! Transfer made on the GPU from current normals, against the bake's closed form and the f64 reference.
 
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
-
-mod host;
-
+use crate::host::falling::Falling;
+use crate::host::{Numbers, length, wide, wide_rgb, with_bench};
 use airglow_bake::Mesh;
 use airglow_graph::Access;
 use airglow_math::sh::product::TripleProduct;
@@ -13,8 +11,6 @@ use airglow_relight::{
     reference,
 };
 use glam::{DQuat, DVec3, Mat4};
-use host::falling::Falling;
-use host::{Numbers, length, wide, wide_rgb, with_bench};
 
 /// A mesh in motion and everything that can fall on it.
 struct Input {

@@ -1,16 +1,10 @@
 //! A small step of a lamp or of the camera makes a small step of the picture.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
-mod bad_pixels;
-mod images;
-mod tiles;
-
+use crate::images::{Images, PIXELS, SIZE};
 use airglow_fog::{Camera, Fog, Frame, Light, Medium, Phase, Prepared, Settings, View};
 use airglow_math::World;
 use airglow_tests::device::{Fixture, fixture_with};
 use glam::DVec3;
-use images::{Images, PIXELS, SIZE};
 
 const STEPS: usize = 200;
 /// Metres.

@@ -1,11 +1,9 @@
 //! The rows of `airglow eval`: the GPU's projection, rotation and product against the f64 reference.
 
-mod host;
-
+use crate::host::{Numbers, length, with_bench};
 use airglow_relight::Texels;
 use airglow_relight::eval::{ProductRow, RotateRow, environment_sh, sh_product, sh_rotate};
 use glam::{DQuat, DVec3};
-use host::{Numbers, length, with_bench};
 
 /// Relative L2 distance of two vectors.
 fn distance(actual: &[f64], reference: &[f64]) -> f64 {

@@ -1,9 +1,7 @@
 //! The extreme inputs and sweeps of `airglow stability`, all within their bounds.
 
-mod host;
-
+use crate::host::with_bench;
 use airglow_relight::stability::{Selection, cases, sweeps};
-use host::with_bench;
 
 #[test]
 fn every_extreme_input_is_within_its_bound() {

@@ -1,7 +1,5 @@
 //! The pass's functions on the device against quadrature in f64, over the whole domain.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use std::f64::consts::PI;
 
 use airglow_fog::eval::{AirlightRow, airlight};

@@ -1,7 +1,5 @@
 //! Every extreme input and sweep passes.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use airglow_fog::stability::{cases, sweeps};
 use airglow_fog::{Bench, Fog, Settings};
 use airglow_gpu::{GpuError, Recorder};

@@ -1,7 +1,5 @@
 //! What the tests draw the pass over.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use airglow_fog::{ACCESSES, Bindings, Pass};
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
 use airglow_gpu::{Image, Label, Location};

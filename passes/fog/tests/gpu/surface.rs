@@ -1,7 +1,5 @@
 //! Tables of lobes and the spread function, built and read on the device, against quadrature in f64.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use std::f64::consts::PI;
 
 use airglow_fog::eval::Evaluated;

@@ -1,11 +1,8 @@
 //! The road of the graph: what a plan holds and leaves out, the same bits as without a graph, meshes between frames.
 
-#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
-
-mod host;
-
 use std::path::Path;
 
+use crate::host::{Numbers, fixture};
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
 use airglow_gpu::{Context, Execution, Image, Imports, Label, Location, Readback, Record};
@@ -17,7 +14,6 @@ use airglow_relight::{
 use airglow_tests::device::Fixture;
 use airglow_tests::golden::assert_text;
 use glam::DQuat;
-use host::{Numbers, fixture};
 
 const WIDTH: u32 = 32;
 const HEIGHT: u32 = 16;

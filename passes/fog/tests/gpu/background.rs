@@ -1,13 +1,10 @@
 //! Environments through fog: the picture against quadrature over the map, its energy and the band factors; and what the
 //! way to a surface scatters of their light.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
-mod images;
-mod maps;
-
+use crate::maps;
 use std::f64::consts::{PI, TAU};
 
+use crate::images::{Images, PIXELS, SIZE, view_distance};
 use airglow_fog::reference::environment::factors;
 use airglow_fog::reference::spread::exact;
 use airglow_fog::{
@@ -22,7 +19,6 @@ use airglow_math::sh;
 use airglow_math::sphere::equirect;
 use airglow_tests::device::{Fixture, fixture_with};
 use glam::DVec3;
-use images::{Images, PIXELS, SIZE, view_distance};
 
 const WIDTH: u32 = 37;
 const HEIGHT: u32 = 19;
