@@ -1,4 +1,4 @@
-//! Nodes, skins and animations as glTF has them: read, not played.
+//! Nodes, skins and animations as glTF has them; `pose` plays them.
 
 use glam::{Mat4, Quat, Vec3};
 

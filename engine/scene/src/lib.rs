@@ -27,6 +27,7 @@ mod camera;
 mod environment;
 mod error;
 pub mod exposure;
+mod figure;
 mod files;
 pub mod geometry;
 mod gltf_file;
@@ -36,6 +37,7 @@ mod light;
 pub mod limits;
 mod material;
 mod mesh;
+mod pose;
 mod scene;
 mod scene_file;
 mod settings;
@@ -48,6 +50,7 @@ pub use animation::{Animation, Channel, ChannelValues, Interpolation, LocalTrans
 pub use camera::{Camera, Projection, Sphere};
 pub use environment::Environment;
 pub use error::SceneError;
+pub use figure::Figure;
 pub use files::write_atomically;
 pub use image::{Encoding, FloatImage, Image, luminance, srgb_decode, srgb_encode};
 pub use light::{Blocker, Emitter, EmitterShape, Light, LightKind, Medium, VISIBILITY_CONTRAST};
@@ -62,9 +65,6 @@ pub use warning::Warning;
 /// # Errors
 /// [`SceneError`] if a file is missing, broken, too large or asks for something that cannot be left out.
 pub fn load(file: &Path) -> Result<Scene, SceneError> {
-    let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let scene = match extension.to_ascii_lowercase().as_str() {
-        "toml" => scene_file::load(file, data)?,
     load_with_data(file, None)
 }
 
@@ -74,6 +74,9 @@ pub fn load(file: &Path) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load`], and where a scene file names such a file and there is no folder.
 pub fn load_with_data(file: &Path, data: Option<&Path>) -> Result<Scene, SceneError> {
+    let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let scene = match extension.to_ascii_lowercase().as_str() {
+        "toml" => scene_file::load(file, data)?,
         "glb" | "gltf" => gltf_file::load(file)?,
         other => {
             let feature = format!("the file name extension {other:?}");

@@ -5,6 +5,7 @@ use glam::{Mat4, Vec3};
 use crate::animation::{Animation, Node, Skin};
 use crate::camera::{Camera, Sphere};
 use crate::environment::Environment;
+use crate::figure::Figure;
 use crate::image::Image;
 use crate::light::{Blocker, Emitter, Light, Medium};
 use crate::limits::MAX_COORDINATE;
@@ -35,6 +36,8 @@ pub struct Scene {
     pub skins: Vec<Skin>,
     /// Animations of the nodes.
     pub animations: Vec<Animation>,
+    /// What moves by itself.
+    pub figures: Vec<Figure>,
     /// Distant light.
     pub environment: Option<Environment>,
     /// What fills the space between the surfaces.

@@ -80,7 +80,8 @@ fn the_scene_file_of_the_readme_loads() {
     assert_eq!((scene.warnings.as_slice(), scene.quality), ([].as_slice(), Quality::default()));
     assert!(scene.environment.is_some() && scene.medium.is_some());
     assert_eq!((scene.emitters.len(), scene.blockers.len(), scene.cameras.len()), (1, 1, 1));
-    let spot = scene.instances.last().unwrap();
+    assert_eq!((scene.figures.len(), scene.figures[0].animation), (1, Some(0)));
+    let spot = &scene.instances[scene.figures[0].instances.start - 1];
     assert_eq!(scene.meshes[spot.mesh].name, "spot");
     let nose_height = spot.transform.transform_point3(glam::Vec3::Y).y;
     assert!((nose_height - 1.5).abs() < 1e-6, "{nose_height}, expected 0.9 + 0.6");

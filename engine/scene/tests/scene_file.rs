@@ -187,3 +187,37 @@ fn files_of_the_data_folder_are_found_there_and_subdivided() {
     let error = load_text(&folder, "[[gltf]]\nfile = \"a.glb\"\nsubdivide = 7\n").unwrap_err().to_string();
     assert!(error.contains("0 to 6"), "{error}");
 }
+
+/// A figure is posed by its animation, stands where its velocity has taken it, and brings no camera.
+#[test]
+fn figures_move() {
+    let text = |more: &str| {
+        format!(
+            "[[figure]]\nfile = \"model.glb\"\ntranslation = [1, 0, 0]\nrotation = {{ yaw = 90 }}\n{more}"
+        )
+    };
+    let folder = folder();
+    let mut scene = load_text(&folder, &text("velocity = [0, 0, 2]\nspheres = 7")).unwrap();
+    assert_eq!((scene.figures.len(), scene.cameras.len()), (1, 0));
+    let figure = scene.figures[0].clone();
+    assert_eq!((figure.name.as_str(), figure.spheres, figure.instances.clone()), ("figure 0", 7, 0..1));
+    assert!(scene.moves(0) && !scene.moves(1));
+    let rest = figure.meshes[0];
+    let low = |scene: &Scene| {
+        let positions = &scene.meshes[scene.instances[0].mesh].positions;
+        positions.iter().copied().map(Vec3::from).fold(Vec3::INFINITY, Vec3::min)
+    };
+    scene.set_time(0.0);
+    let (start, meshes) = (low(&scene), scene.meshes.len());
+    assert_ne!(scene.instances[0].mesh, rest, "the mesh at rest stays");
+    assert!(scene.meshes[scene.instances[0].mesh].joints.is_empty());
+    let period = scene.animations[figure.animation.unwrap()].duration();
+    scene.set_time(period);
+    // Forwards along its own +Z, which the yaw turns to +X.
+    assert!((low(&scene) - start - 2.0 * period * Vec3::X).length() < 1e-4, "{} after {start}", low(&scene));
+    assert_eq!(scene.meshes.len(), meshes, "posed anew in the same place");
+    let refused = |more: &str| load_text(&folder, &text(more)).unwrap_err().to_string();
+    assert!(refused("animation = \"none\"").contains("it has ["), "{}", refused("animation = \"none\""));
+    assert!(refused("spheres = 0").contains("1 to 1024"));
+    assert!(refused("mesh = \"mesh\"").contains("unknown field"));
+}

@@ -1,4 +1,5 @@
-//! Makes `assets/mesh/walker.glb`: a figure of rounded limbs with a skin and a walk of one cycle, which loops.
+//! Makes `assets/mesh/walker.glb`, a figure of rounded limbs with a skin and a walk of one cycle, which loops; and
+//! `ground.glb`, for it to walk on, whose scene file subdivides it.
 
 use std::f32::consts::{PI, TAU};
 use std::path::Path;
@@ -28,7 +29,11 @@ const LENGTH: usize = 6;
 const CYCLE: f32 = 1.2;
 const KEYS: usize = 17;
 
-/// Writes `walker.glb` into `assets/mesh`.
+/// Metres of the ground's side, and squares along it: with 6 subdivisions 193 x 193 vertices, 42 mm apart.
+const SIDE: f32 = 8.0;
+const SQUARES: usize = 3;
+
+/// Writes `walker.glb` and `ground.glb` into `assets/mesh`.
 pub fn make(assets: &Path) -> Result<(), Error> {
     let bones = bones();
     let (mut mesh, mut joints, mut weights) = (Mesh::default(), Vec::new(), Vec::new());
@@ -64,7 +69,35 @@ pub fn make(assets: &Path) -> Result<(), Error> {
         "skins": [{"name": "walker", "joints": (0..bones.len()).collect::<Vec<_>>(), "inverseBindMatrices": bind}],
         "animations": [animation],
     });
-    buffers.write(&assets.join("mesh/walker.glb"), document)
+    buffers.write(&assets.join("mesh/walker.glb"), document)?;
+    ground(&assets.join("mesh/ground.glb"))
+}
+
+/// A square about the origin, at height 0.
+fn ground(path: &Path) -> Result<(), Error> {
+    let place = |at: usize| SIDE * (at as f32 / SQUARES as f32 - 0.5);
+    let corners = (0..=SQUARES).flat_map(|z| (0..=SQUARES).map(move |x| Vec3::new(place(x), 0.0, place(z))));
+    let squares = (0..SQUARES * SQUARES).flat_map(|at| {
+        let first = (at / SQUARES * (SQUARES + 1) + at % SQUARES) as u32;
+        let next = first + SQUARES as u32 + 1;
+        [first, next, next + 1, first, next + 1, first + 1]
+    });
+    let mesh = Mesh {
+        positions: corners.collect(),
+        normals: vec![Vec3::Y; (SQUARES + 1) * (SQUARES + 1)],
+        indices: squares.collect(),
+    };
+    let mut buffers = Buffers::default();
+    let primitive = buffers.primitive(&mesh, 0);
+    let document = json!({
+        "asset": {"version": "2.0", "generator": "airglow xtask walker", "copyright": "CC0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "ground", "mesh": 0}],
+        "meshes": [{"name": "ground", "primitives": [primitive]}],
+        "materials": [glb::material("ground", [0.62, 0.6, 0.57], 0.0, 0.95)],
+    });
+    buffers.write(path, document)
 }
 
 fn bones() -> Vec<Bone> {
@@ -128,7 +161,13 @@ fn limb(
             let at = |ring: u32, step: u32| base + ring * AROUND as u32 + step % AROUND as u32;
             let [a, b, c, d] =
                 [at(ring, step), at(ring, step + 1), at(ring + 1, step + 1), at(ring + 1, step)];
-            mesh.indices.extend([a, b, c, a, c, d]);
+            // At the poles all places of a ring are one.
+            if ring > 0 {
+                mesh.indices.extend([a, b, c]);
+            }
+            if ring + 2 < rings as u32 {
+                mesh.indices.extend([a, c, d]);
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Skins and animations: read and checked, not played.
+//! Skins and animations: read and checked.
 
 use std::path::Path;
 

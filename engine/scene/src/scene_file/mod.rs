@@ -1,6 +1,7 @@
 //! Scene files: TOML that names glTF files and an environment and adds what glTF cannot say. This crate's README
 //! describes every table.
 
+mod figure;
 mod place;
 mod schema;
 mod values;
@@ -50,6 +51,9 @@ fn build(mut builder: Builder<'_>, text: &str, parsed: SceneFile) -> Result<Scen
             let problem = format!("{} places no mesh {named:?}; name one it has", entry.file.display());
             return Err(at(file, text, mesh, problem));
         }
+    }
+    for (index, table) in parsed.figure.iter().enumerate() {
+        figure::place(file, text, table, index, &mut builder)?;
     }
     let environment =
         parsed.environment.map(|table| environment(&builder.resolve(&table.file), &table)).transpose()?;

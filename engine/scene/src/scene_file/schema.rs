@@ -6,6 +6,7 @@ use glam::{Mat4, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::figure::FigureTable;
 use super::values::{
     Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Times, Vector,
     ViewDegrees,
@@ -23,6 +24,8 @@ pub(super) struct SceneFile {
     pub(super) gltf: Vec<Placed>,
     #[serde(default)]
     pub(super) instance: Vec<Placed>,
+    #[serde(default)]
+    pub(super) figure: Vec<FigureTable>,
     pub(super) environment: Option<EnvironmentTable>,
     pub(super) medium: Option<MediumTable>,
     #[serde(default)]
@@ -142,10 +145,10 @@ pub(super) struct EmitterTable {
     center: Vector,
     shape: EmitterShape,
     radiance: Rgb,
+    to: Option<Vector>,
 }
 
 #[derive(Deserialize)]
-    to: Option<Vector>,
 #[serde(deny_unknown_fields)]
 struct EmitterFields {
     name: Option<String>,
@@ -153,10 +156,10 @@ struct EmitterFields {
     radius: Option<Positive>,
     size: Option<[Positive; 3]>,
     radiance: Rgb,
+    to: Option<Vector>,
 }
 
 impl TryFrom<EmitterFields> for EmitterTable {
-    to: Option<Vector>,
     type Error = &'static str;
 
     fn try_from(fields: EmitterFields) -> Result<Self, Self::Error> {
@@ -178,10 +181,10 @@ impl EmitterTable {
             center: Vec3::from(self.center).into(),
             shape: self.shape,
             radiance: self.radiance.into(),
+            to: self.to.map(|to| Vec3::from(to).into()),
         }
     }
 }
-            to: self.to.map(|to| Vec3::from(to).into()),
 
 /// `[[blocker]]`.
 #[derive(Debug, Deserialize)]
