@@ -7,7 +7,9 @@ use airglow_gpu::{
     GpuError, GraphicsPipelineDesc, Imports, Label, Load, Record, Rendering, VertexAttribute,
     VertexBufferLayout,
 };
-use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, Image, ImageDesc, Options, PassKind, State};
+use airglow_graph::{
+    Access, Buffer, BufferDesc, Graph, Handle, Image, ImageDesc, Options, PassKind, Plan, State,
+};
 use airglow_tests::compare::{assert_close, assert_same_bits};
 use airglow_tests::device::{Fixture, fixture};
 use airglow_tests::plan::compile_with;
@@ -136,6 +138,7 @@ fn draw(
     fixture: &Fixture,
     roads: &[Road],
     seed: Option<u64>,
+    prepare: fn(&Context, Plan<Record>) -> Result<Execution, GpuError>,
 ) -> Result<(Vec<Vec<f32>>, Vec<String>), GpuError> {
     let context = fixture.context();
     let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
@@ -154,7 +157,7 @@ fn draw(
     let options = Options { seed, ..Options::default() };
     let plan = compile_with(graph, &context.graph_limits(), &options);
     let order = plan.steps().iter().map(|step| step.name.to_string()).collect();
-    let mut execution = Execution::prepare(context, plan)?;
+    let mut execution = prepare(context, plan)?;
     // Twice, so that the second recording meets what the first left behind.
     let mut pictures_back = Vec::new();
     for _ in 0..2 {
@@ -172,8 +175,8 @@ fn draw(
 fn compute_and_fragment_pass_draw_the_same_bits() {
     let fixture = fixture();
     let values = COUNT as usize * 4;
-    let by_compute = draw(&fixture, &[add_compute], None).unwrap().0.remove(0);
-    let by_fragment = draw(&fixture, &[add_fragment], None).unwrap().0.remove(0);
+    let by_compute = draw(&fixture, &[add_compute], None, Execution::prepare).unwrap().0.remove(0);
+    let by_fragment = draw(&fixture, &[add_fragment], None, Execution::prepare).unwrap().0.remove(0);
     assert_close("compute pass", &by_compute[..values], &reference(), 1e-6, 1e-6);
     assert_same_bits("fragment pass", &by_fragment, &by_compute);
     let untouched = &by_compute[values..];
@@ -187,10 +190,10 @@ fn compute_and_fragment_pass_draw_the_same_bits() {
 fn every_legal_order_draws_the_same_bits() {
     let fixture = fixture();
     let roads: [Road; 3] = [add_compute, add_fragment, add_compute];
-    let (expected, declared) = draw(&fixture, &roads, None).unwrap();
+    let (expected, declared) = draw(&fixture, &roads, None, Execution::prepare).unwrap();
     let mut orders = BTreeSet::from([declared]);
     for seed in 0..8 {
-        let (pictures, order) = draw(&fixture, &roads, Some(seed)).unwrap();
+        let (pictures, order) = draw(&fixture, &roads, Some(seed), Execution::prepare).unwrap();
         for (road, (picture, expected)) in pictures.iter().zip(&expected).enumerate() {
             assert_same_bits(&format!("road {road} in order {order:?}"), picture, expected);
         }
@@ -198,4 +201,31 @@ fn every_legal_order_draws_the_same_bits() {
     }
     println!("{} orders of {} passes gave the same bits", orders.len(), 7);
     assert!(orders.len() > 4, "the seeds shuffle too little: {orders:?}");
+}
+
+/// Both ways of making the plan's transients, and what the second takes.
+#[test]
+fn transients_in_shared_memory_draw_the_same_bits() {
+    let fixture = fixture();
+    let roads: [Road; 4] = [add_compute, add_fragment, add_compute, add_fragment];
+    let (expected, _) = draw(&fixture, &roads, None, Execution::prepare).unwrap();
+    let shared: fn(&Context, Plan<Record>) -> Result<Execution, GpuError> = |context, plan| {
+        let held = |context: &Context| {
+            context.memory_report().iter().find(|of| of.owner == "transient").map_or(0, |of| of.bytes)
+        };
+        let before = held(context);
+        let execution = Execution::prepare_shared(context, plan)?;
+        let sharing = execution.sharing().expect("one memory type for all");
+        airglow_checker::check_sharing(execution.plan(), sharing).expect("sound places");
+        let (bytes, taken) = (execution.plan().bytes(), held(context) - before);
+        println!("{} bytes apart, {taken} shared, {} waits", bytes.transient, sharing.handovers.len());
+        assert!(sharing.saved() > 0 && taken < bytes.transient, "{taken} of {bytes:?}");
+        Ok(execution)
+    };
+    for seed in [None, Some(1), Some(2), Some(3)] {
+        let (pictures, order) = draw(&fixture, &roads, seed, shared).unwrap();
+        for (picture, expected) in pictures.iter().zip(&expected) {
+            assert_same_bits(&format!("shared, in order {order:?}"), picture, expected);
+        }
+    }
 }

@@ -1,14 +1,14 @@
 //! From a compiled plan to commands: makes its transients once, then replays barriers and payloads every frame.
 
-use crate::allocator::Location;
 use crate::context::Context;
 use crate::counts::Counts;
 use crate::error::GpuError;
-use crate::memory::{Buffer, Image, Label};
+use crate::memory::{Buffer, Image};
 use crate::recorder::Recorder;
 use crate::resources::{Concrete, Imports, Resources, check_imports};
 use crate::timing::Timing;
-use airglow_graph::{Barriers, BufferBarrier, ImageBarrier, Origin, Plan, PlanResource, ResourceDesc};
+use crate::transients::{self, Transients};
+use airglow_graph::{Barriers, BufferBarrier, Handover, ImageBarrier, Plan, Sharing};
 use ash::vk;
 use std::time::{Duration, Instant};
 
@@ -30,9 +30,13 @@ pub struct Recorded {
 /// A plan with its transient resources, ready to be recorded once per frame.
 pub struct Execution {
     plan: Plan<Record>,
-    transients: Vec<Option<Concrete>>,
+    transients: Transients,
     /// What each step did when it was recorded last.
     counts: Vec<Counts>,
+    /// How transients share memory, where they do.
+    sharing: Option<Sharing>,
+    /// The waits of that before each step.
+    handovers: Vec<Vec<vk::MemoryBarrier2<'static>>>,
     /// Scratch, kept so that a frame allocates nothing.
     buffer_barriers: Vec<vk::BufferMemoryBarrier2<'static>>,
     image_barriers: Vec<vk::ImageMemoryBarrier2<'static>>,
@@ -45,9 +49,24 @@ impl Execution {
     /// [`GpuError::Budget`] for all transients together, before any is made, and those of making buffers and images; what
     /// was made until then is freed.
     pub fn prepare(context: &Context, plan: Plan<Record>) -> Result<Self, GpuError> {
-        context.shared.check_budget("the plan's transient resources", plan.bytes().transient)?;
-        let transients =
-            plan.resources().iter().map(|resource| transient(context, resource)).collect::<Result<_, _>>()?;
+        let transients = transients::apart(context, &plan)?;
+        Ok(Self::with(plan, transients, None))
+    }
+
+    /// The same with transients in memory that they hand to one another, as [`Plan::sharing_with`] places them by what the
+    /// device asks for each: less memory for one more barrier where a place changes hands. Results are the same bits. On a
+    /// device that has no memory for all of them together, [`Execution::sharing`] is none and each has its own.
+    ///
+    /// # Errors
+    /// As [`Execution::prepare`].
+    pub fn prepare_shared(context: &Context, plan: Plan<Record>) -> Result<Self, GpuError> {
+        match transients::shared(context, &plan)? {
+            Some((transients, sharing)) => Ok(Self::with(plan, transients, Some(sharing))),
+            None => Self::prepare(context, plan),
+        }
+    }
+
+    fn with(plan: Plan<Record>, transients: Transients, sharing: Option<Sharing>) -> Self {
         let most = |count: fn(&Barriers) -> usize| {
             let steps = plan.steps().iter().map(|step| &step.barriers);
             steps
@@ -60,7 +79,16 @@ impl Execution {
         let image_barriers = Vec::with_capacity(most(|barriers| barriers.images.len()));
         let memory = (0..plan.steps().len()).map(|step| plan.step_bytes(step));
         let counts = memory.map(|memory_bytes| Counts { memory_bytes, ..Counts::default() }).collect();
-        Ok(Self { plan, transients, counts, buffer_barriers, image_barriers })
+        let mut handovers = vec![Vec::new(); plan.steps().len()];
+        for handover in sharing.iter().flat_map(|sharing| &sharing.handovers) {
+            handovers[handover.before].push(memory_barrier(handover));
+        }
+        Self { plan, transients, counts, sharing, handovers, buffer_barriers, image_barriers }
+    }
+
+    /// How the plan's transients share memory; `None` where each has its own.
+    pub fn sharing(&self) -> Option<&Sharing> {
+        self.sharing.as_ref()
     }
 
     /// The plan.
@@ -94,7 +122,7 @@ impl Execution {
         imports: &Imports,
         mut timing: Option<&mut Timing>,
     ) -> Result<Recorded, GpuError> {
-        let Self { plan, transients, counts, buffer_barriers, image_barriers } = self;
+        let Self { plan, transients, counts, handovers, buffer_barriers, image_barriers, .. } = self;
         check_imports(context, plan, imports)?;
         let resources = Resources { plan, transients, imports };
         // SAFETY: the caller vouches for the command buffer.
@@ -113,10 +141,11 @@ impl Execution {
             if let Some(timing) = timing.as_deref_mut() {
                 timing.begin_pass(command_buffer, index);
             }
+            hand_over(context, command_buffer, &handovers[index]);
             barriers(&step.barriers)?;
             recorder.labelled(&step.name, |recorder| {
                 recorder.counts = Counts {
-                    barriers: step.barriers.len() as u64,
+                    barriers: (step.barriers.len() + handovers[index].len()) as u64,
                     memory_bytes: counts[index].memory_bytes,
                     ..Counts::default()
                 };
@@ -135,18 +164,27 @@ impl Execution {
     }
 }
 
-/// A transient that some step uses, or `None`.
-fn transient(context: &Context, resource: &PlanResource) -> Result<Option<Concrete>, GpuError> {
-    if !matches!(resource.origin, Origin::Transient) || resource.lifetime.is_none() {
-        return Ok(None);
+/// The wait for a place that changes hands.
+fn memory_barrier(handover: &Handover) -> vk::MemoryBarrier2<'static> {
+    vk::MemoryBarrier2::default()
+        .src_stage_mask(handover.src_stage)
+        .src_access_mask(handover.src_access)
+        .dst_stage_mask(handover.dst_stage)
+        .dst_access_mask(handover.dst_access)
+}
+
+/// Before the barriers of a step, which then find the places theirs.
+fn hand_over(
+    context: &Context,
+    command_buffer: vk::CommandBuffer,
+    handovers: &[vk::MemoryBarrier2<'static>],
+) {
+    if handovers.is_empty() {
+        return;
     }
-    let label = Label::new("transient", &resource.name);
-    Ok(Some(match &resource.desc {
-        ResourceDesc::Buffer(desc) => {
-            Concrete::Buffer(context.create_buffer(label, desc, Location::Device)?)
-        }
-        ResourceDesc::Image(desc) => Concrete::Image(context.create_image(label, desc)?),
-    }))
+    let info = vk::DependencyInfo::default().memory_barriers(handovers);
+    // SAFETY: `Execution::record` has the caller vouch for the command buffer.
+    unsafe { context.shared.device().cmd_pipeline_barrier2(command_buffer, &info) };
 }
 
 fn record_barriers(

@@ -35,6 +35,7 @@ mod shared;
 pub mod surface;
 mod tally;
 mod timing;
+mod transients;
 
 pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
 pub use ash;

@@ -5,10 +5,28 @@ use ash::vk;
 
 /// A Vulkan object that nothing on the CPU refers to any more.
 pub(crate) enum Retired {
-    Buffer { raw: vk::Buffer, memory: Option<Allocation>, ledger: usize },
-    Image { raw: vk::Image, views: Vec<vk::ImageView>, memory: Option<Allocation>, ledger: usize },
+    Buffer {
+        raw: vk::Buffer,
+        memory: Option<Allocation>,
+        ledger: usize,
+    },
+    Image {
+        raw: vk::Image,
+        views: Vec<vk::ImageView>,
+        memory: Option<Allocation>,
+        ledger: usize,
+    },
     Views(Vec<vk::ImageView>),
-    Pipeline { pipeline: vk::Pipeline, layout: vk::PipelineLayout, set_layout: vk::DescriptorSetLayout },
+    /// Memory in which others were placed, destroyed before.
+    Heap {
+        memory: Option<Allocation>,
+        ledger: usize,
+    },
+    Pipeline {
+        pipeline: vk::Pipeline,
+        layout: vk::PipelineLayout,
+        set_layout: vk::DescriptorSetLayout,
+    },
     Sampler(vk::Sampler),
     QueryPool(vk::QueryPool),
 }
@@ -35,6 +53,7 @@ impl Retired {
                 Self::Views(views) => {
                     views.into_iter().for_each(|view| device.destroy_image_view(view, None))
                 }
+                Self::Heap { memory, ledger } => return Some((memory, ledger)),
                 Self::Pipeline { pipeline, layout, set_layout } => {
                     device.destroy_pipeline(pipeline, None);
                     device.destroy_pipeline_layout(layout, None);

@@ -5,7 +5,7 @@ use super::host::{Host, of};
 use super::roads::{by_graph, fill, read_back};
 use super::{HostDevice, Outputs, Refusal, Road, Room};
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Context, Options, Readback, Recorder, Requirements};
+use airglow_gpu::{Context, Execution, Options, Readback, Recorder, Requirements};
 
 /// Frames in flight.
 const IN_FLIGHT: usize = 2;
@@ -81,7 +81,7 @@ impl Host<'_> {
                     fill(&mut recorder, resource, given, resource.entry)?;
                 }
                 let rooms = [(&mut room, &*resources, &*given)];
-                let execution = by_graph(rooms, &mut recorder, &Default::default())?;
+                let execution = by_graph(rooms, &mut recorder, &Default::default(), Execution::prepare)?;
                 copies.push(read_back(&mut recorder, &resources, &given)?);
                 fences.push(self.submit(commands)?);
                 drop((execution, given));

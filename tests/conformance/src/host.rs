@@ -4,7 +4,9 @@ use super::roads::{by_graph, by_record, fill, read_back};
 use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, check_layouts};
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
-use airglow_gpu::{AdoptInfo, Context, FeatureSet, Label, Options, Readback, Recorder, Requirements};
+use airglow_gpu::{
+    AdoptInfo, Context, Execution, FeatureSet, Label, Options, Readback, Recorder, Requirements,
+};
 
 /// A host on a device.
 pub(super) struct Host<'a> {
@@ -168,7 +170,7 @@ impl<'a> Host<'a> {
             match road {
                 Road::Graph => {
                     let rooms = [(&mut room, &*resources, &*given)];
-                    execution = Some(by_graph(rooms, recorder, &Default::default())?);
+                    execution = Some(by_graph(rooms, recorder, &Default::default(), Execution::prepare)?);
                     calls = shim.take_calls();
                     check_layouts(&calls, &resources, &given)?;
                 }

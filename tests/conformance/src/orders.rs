@@ -1,13 +1,15 @@
-//! Two of a room in one plan, in other orders than the one declared: a legal order changes no bit.
+//! Two of a room in one plan, in other orders than the one declared, their transients in shared memory: neither changes a
+//! bit.
 
 use super::host::Host;
 use super::roads::{by_graph, fill, read_back};
 use super::{HostDevice, Outputs, Refusal, Road, Room};
-use airglow_gpu::{Context, Options, Record, Requirements};
+use airglow_gpu::{Context, Execution, Options, Record, Requirements};
 use airglow_graph::Step;
 use std::collections::BTreeSet;
 
-/// Runs two of a room in one plan, once for each seed of its order, each beside the same room alone. Returns the orders
+/// Runs two of a room in one plan whose transients share memory, once for each seed of its order, each beside the same room
+/// alone with memory of its own. Returns the orders
 /// that were met, as names of passes.
 ///
 /// # Safety
@@ -62,7 +64,7 @@ impl Host<'_> {
             let rooms = rooms.iter_mut().zip(&resources).zip(&given);
             let rooms = rooms.map(|((room, resources), given)| (room, &**resources, &**given));
             let options = airglow_graph::Options { seed: Some(seed), ..Default::default() };
-            execution = Some(by_graph(rooms, recorder, &options)?);
+            execution = Some(by_graph(rooms, recorder, &options, Execution::prepare_shared)?);
             let mut copies = Vec::new();
             for (resources, given) in resources.iter().zip(&given) {
                 copies.extend(read_back(recorder, resources, given)?);

@@ -4,8 +4,8 @@ use super::{Content, Declared, Given, HostResource, Named, Refusal, Room};
 use crate::plan::checked;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Execution, GpuError, Imports, Readback, Record, Recorder};
-use airglow_graph::{Access, Graph, Options, State};
+use airglow_gpu::{Context, Execution, GpuError, Imports, Readback, Record, Recorder};
+use airglow_graph::{Access, Graph, Options, Plan, State};
 
 /// The host's own commands before the room: contents, then the state handed over.
 pub(super) fn fill(
@@ -51,11 +51,12 @@ fn hand_over(recorder: &mut Recorder<'_>, given: &Given, from: State, to: State)
     Ok(())
 }
 
-/// One plan of all rooms, each with its resources of the host's.
+/// One plan of all rooms, each with its resources of the host's; `prepare` makes its transients.
 pub(super) fn by_graph<'r, R: Room + 'r>(
     rooms: impl IntoIterator<Item = (&'r mut R, &'r [HostResource], &'r [Given])>,
     recorder: &mut Recorder<'_>,
     options: &Options,
+    prepare: fn(&Context, Plan<Record>) -> Result<Execution, GpuError>,
 ) -> Result<Execution, Refusal> {
     let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
     let context = recorder.context();
@@ -77,7 +78,7 @@ pub(super) fn by_graph<'r, R: Room + 'r>(
         room.add(&mut Declared { context, graph: &mut graph, imports: &mut imports, host: &named })?;
     }
     let plan = checked(graph, &context.graph_limits(), options)?;
-    let mut execution = Execution::prepare(context, plan)?;
+    let mut execution = prepare(context, plan)?;
     // SAFETY: the recorder's command buffer is recording; the host brought every import to its entry state.
     let recorded = unsafe { execution.record(context, recorder.command_buffer(), &imports, None) };
     recorded?;

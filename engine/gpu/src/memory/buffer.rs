@@ -1,6 +1,7 @@
 //! Buffers and ranges of them.
 
 use super::Label;
+use super::heap::Heap;
 use crate::allocator::{Allocation, Location};
 use crate::context::Context;
 use crate::error::GpuError;
@@ -22,10 +23,11 @@ struct Inner {
     raw: vk::Buffer,
     name: String,
     desc: BufferDesc,
-    /// The memory, and the lock that makes mapped access one at a time. `None`: imported.
+    /// The memory, and the lock that makes mapped access one at a time. `None`: placed in a heap, or imported.
     memory: Mutex<Option<Allocation>>,
     mapped: Option<Mapped>,
-    imported: bool,
+    /// What it is placed in.
+    heap: Option<Heap>,
     ledger: usize,
 }
 
@@ -71,28 +73,23 @@ impl Buffer {
         shared.name(raw, vk::ObjectType::BUFFER, label.name);
         let ledger = shared.ledger().add(label.owner, memory.size);
         let mapped = memory.mapped.filter(|_| location != Location::Device).map(Mapped);
-        Ok(Self::from_parts(shared, raw, label, desc, Some(memory), mapped, ledger))
+        let mut inner = Inner::new(shared, raw, label, desc, ledger);
+        (inner.memory, inner.mapped) = (Mutex::new(Some(memory)), mapped);
+        Ok(Self(Arc::new(inner)))
     }
 
-    fn from_parts(
+    /// A buffer that was bound to a place in `heap`.
+    pub(crate) fn placed(
         shared: &Arc<Shared>,
         raw: vk::Buffer,
         label: Label<'_>,
         desc: &BufferDesc,
-        memory: Option<Allocation>,
-        mapped: Option<Mapped>,
-        ledger: usize,
+        heap: &Heap,
     ) -> Self {
-        Self(Arc::new(Inner {
-            shared: Arc::clone(shared),
-            raw,
-            name: label.name.to_owned(),
-            desc: *desc,
-            imported: memory.is_none(),
-            memory: Mutex::new(memory),
-            mapped,
-            ledger,
-        }))
+        shared.name(raw, vk::ObjectType::BUFFER, label.name);
+        let mut inner = Inner::new(shared, raw, label, desc, shared.ledger().add(label.owner, 0));
+        inner.heap = Some(heap.clone());
+        Self(Arc::new(inner))
     }
 
     /// The Vulkan handle, for the host's own commands. It dies with the last clone, frames later.
@@ -190,13 +187,34 @@ impl Buffer {
     }
 }
 
+impl Inner {
+    /// A buffer without memory of its own.
+    fn new(
+        shared: &Arc<Shared>,
+        raw: vk::Buffer,
+        label: Label<'_>,
+        desc: &BufferDesc,
+        ledger: usize,
+    ) -> Self {
+        Self {
+            shared: Arc::clone(shared),
+            raw,
+            name: label.name.to_owned(),
+            desc: *desc,
+            memory: Mutex::default(),
+            mapped: None,
+            heap: None,
+            ledger,
+        }
+    }
+}
+
 impl Drop for Inner {
     fn drop(&mut self) {
-        if self.imported {
-            self.shared.ledger().remove(self.ledger, 0);
-            return;
-        }
         let memory = lock(&self.memory).take();
+        if memory.is_none() && self.heap.is_none() {
+            return self.shared.ledger().remove(self.ledger, 0);
+        }
         self.shared.retire(Retired::Buffer { raw: self.raw, memory, ledger: self.ledger });
     }
 }
@@ -261,6 +279,6 @@ impl Context {
     /// so until every clone is dropped and the frames that used it are done. Dropping the clones does not destroy it.
     pub unsafe fn import_buffer(&self, raw: vk::Buffer, label: Label<'_>, desc: &BufferDesc) -> Buffer {
         let ledger = self.shared.ledger().add(label.owner, 0);
-        Buffer::from_parts(&self.shared, raw, label, desc, None, None, ledger)
+        Buffer(Arc::new(Inner::new(&self.shared, raw, label, desc, ledger)))
     }
 }

@@ -1,5 +1,6 @@
 //! Images.
 
+use super::heap::Heap;
 use super::{Label, ViewDesc};
 use crate::allocator::{Allocation, Location};
 use crate::context::Context;
@@ -22,6 +23,8 @@ pub(super) struct Inner {
     /// Views made so far.
     pub(super) views: Mutex<Vec<(ViewDesc, vk::ImageView)>>,
     memory: Option<Allocation>,
+    /// What it is placed in.
+    heap: Option<Heap>,
     ledger: usize,
 }
 
@@ -45,7 +48,20 @@ impl Image {
         };
         shared.name(raw, vk::ObjectType::IMAGE, label.name);
         let ledger = shared.ledger().add(label.owner, memory.size);
-        Ok(Self::from_parts(shared, raw, label, desc, Some(memory), ledger))
+        Ok(Self::from_parts(shared, raw, label, desc, (Some(memory), None), ledger))
+    }
+
+    /// An image that was bound to a place in `heap`.
+    pub(crate) fn placed(
+        shared: &Arc<Shared>,
+        raw: vk::Image,
+        label: Label<'_>,
+        desc: &ImageDesc,
+        heap: &Heap,
+    ) -> Self {
+        shared.name(raw, vk::ObjectType::IMAGE, label.name);
+        let ledger = shared.ledger().add(label.owner, 0);
+        Self::from_parts(shared, raw, label, desc, (None, Some(heap.clone())), ledger)
     }
 
     fn from_parts(
@@ -53,7 +69,7 @@ impl Image {
         raw: vk::Image,
         label: Label<'_>,
         desc: &ImageDesc,
-        memory: Option<Allocation>,
+        (memory, heap): (Option<Allocation>, Option<Heap>),
         ledger: usize,
     ) -> Self {
         Self(Arc::new(Inner {
@@ -63,6 +79,7 @@ impl Image {
             desc: *desc,
             views: Mutex::default(),
             memory,
+            heap,
             ledger,
         }))
     }
@@ -95,21 +112,17 @@ impl Image {
 impl Drop for Inner {
     fn drop(&mut self) {
         let views = std::mem::take(&mut *lock(&self.views)).into_iter().map(|(_, view)| view).collect();
-        let Some(memory) = self.memory.take() else {
+        let memory = self.memory.take();
+        if memory.is_none() && self.heap.is_none() {
             self.shared.ledger().remove(self.ledger, 0);
             return self.shared.retire(Retired::Views(views));
-        };
-        self.shared.retire(Retired::Image {
-            raw: self.raw,
-            views,
-            memory: Some(memory),
-            ledger: self.ledger,
-        });
+        }
+        self.shared.retire(Retired::Image { raw: self.raw, views, memory, ledger: self.ledger });
     }
 }
 
 /// The description as Vulkan takes it.
-fn create_info<'a>(desc: &ImageDesc) -> vk::ImageCreateInfo<'a> {
+pub(crate) fn create_info<'a>(desc: &ImageDesc) -> vk::ImageCreateInfo<'a> {
     let three = desc.extent[2] > 1;
     vk::ImageCreateInfo::default()
         .flags(if desc.cube { vk::ImageCreateFlags::CUBE_COMPATIBLE } else { Default::default() })
@@ -123,7 +136,7 @@ fn create_info<'a>(desc: &ImageDesc) -> vk::ImageCreateInfo<'a> {
 }
 
 /// Asks the device whether it can make such an image at all, and how large.
-fn check(
+pub(crate) fn check(
     shared: &Shared,
     label: Label<'_>,
     desc: &ImageDesc,
@@ -183,6 +196,6 @@ impl Context {
     /// the views made here.
     pub unsafe fn import_image(&self, raw: vk::Image, label: Label<'_>, desc: &ImageDesc) -> Image {
         let ledger = self.shared.ledger().add(label.owner, 0);
-        Image::from_parts(&self.shared, raw, label, desc, None, ledger)
+        Image::from_parts(&self.shared, raw, label, desc, (None, None), ledger)
     }
 }

@@ -1,6 +1,7 @@
 //! Buffers, images and samplers: named, charged to an owner, destroyed when no frame can use them.
 
 pub(crate) mod buffer;
+pub(crate) mod heap;
 pub(crate) mod image;
 pub(crate) mod ledger;
 pub(crate) mod sampler;

@@ -1,9 +1,8 @@
-//! What transients would save by sharing memory: an estimate, with the offsets and the waits it would take.
+//! Memory that transients share: places, offsets, the waits it takes, and what it saves.
 //!
 //! Places are found greedily by size, each at the lowest offset free during its lifetime (Pisarchyk and Lee 2020,
-//! "Efficient Memory Management for Deep Neural Net Inference", greedy by size for offset calculation). Sizes are
-//! those of texels and alignments the largest that desktop devices ask for, so a device may differ; nothing in
-//! this workspace places memory by it.
+//! "Efficient Memory Management for Deep Neural Net Inference", greedy by size for offset calculation). Before a device is
+//! asked, sizes are those of texels and alignments the largest that desktop devices ask for: an estimate.
 
 use super::{Lifetime, Plan, PlanResource};
 use crate::access::WRITES;
@@ -19,9 +18,9 @@ const BUFFER_ALIGNMENT: u64 = 256;
 /// Transients in two heaps, buffers and images, so that they need not keep a granularity between them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sharing {
-    /// Where each transient of known size would be that no export keeps alive, by resource.
+    /// Where each transient of known size is that no export keeps alive, by resource.
     pub placements: Vec<Placement>,
-    /// What would have to be waited for, by the place it is handed to.
+    /// What has to be waited for, by the place it is handed to.
     pub handovers: Vec<Handover>,
     /// Bytes of the heap of buffers.
     pub buffer_heap: u64,
@@ -82,9 +81,20 @@ impl Placement {
 }
 
 impl<R> Plan<R> {
-    /// What transients would save by sharing memory, and how.
+    /// What transients would save by sharing memory, and how: an estimate from texels and common alignments.
     pub fn sharing(&self) -> Sharing {
-        let [buffers, images] = [false, true].map(|image| self.place(image));
+        let estimate = |id: ResourceId| {
+            let resource = self.resources.get(id.index())?;
+            let alignment = if resource.desc.is_image() { IMAGE_ALIGNMENT } else { BUFFER_ALIGNMENT };
+            Some((resource.bytes?, alignment))
+        };
+        self.sharing_with(estimate)
+    }
+
+    /// The same with the size and alignment in bytes that a device asks for each transient; one without either is not
+    /// placed.
+    pub fn sharing_with(&self, needs: impl Fn(ResourceId) -> Option<(u64, u64)>) -> Sharing {
+        let [buffers, images] = [false, true].map(|image| self.place(image, &needs));
         let heap = |placements: &[Placement]| placements.iter().map(Placement::end).max().unwrap_or(0);
         let (buffer_heap, image_heap) = (heap(&buffers), heap(&images));
         let mut handovers = self.handovers(&buffers);
@@ -97,15 +107,20 @@ impl<R> Plan<R> {
     }
 
     /// Places the images, or the buffers.
-    fn place(&self, images: bool) -> Vec<Placement> {
-        let alignment = if images { IMAGE_ALIGNMENT } else { BUFFER_ALIGNMENT };
+    fn place(&self, images: bool, needs: impl Fn(ResourceId) -> Option<(u64, u64)>) -> Vec<Placement> {
         let mut wanted: Vec<Placement> = Vec::new();
+        // One alignment for all, so that offsets, which are sums of sizes, are multiples of each one's own.
+        let mut largest = 1;
         for (index, resource) in self.resources.iter().enumerate() {
-            let (Some(bytes), Some(lifetime)) = (resource.bytes, resource.lifetime) else { continue };
+            let id = ResourceId(index as u32);
+            let (Some(lifetime), Some((bytes, alignment))) = (resource.lifetime, needs(id)) else { continue };
             if may_share(resource) && resource.desc.is_image() == images {
-                let bytes = bytes.checked_next_multiple_of(alignment).unwrap_or(bytes);
-                wanted.push(Placement { resource: ResourceId(index as u32), offset: 0, bytes, lifetime });
+                wanted.push(Placement { resource: id, offset: 0, bytes, lifetime });
+                largest = largest.max(alignment);
             }
+        }
+        for place in &mut wanted {
+            place.bytes = place.bytes.checked_next_multiple_of(largest).unwrap_or(place.bytes);
         }
         wanted.sort_by_key(|placement| (std::cmp::Reverse(placement.bytes), placement.resource));
         let mut placed: Vec<Placement> = Vec::new();
@@ -154,7 +169,7 @@ impl<R> Plan<R> {
     }
 }
 
-/// Transients whose size is known and which nothing keeps alive past the plan.
+/// Transients that nothing keeps alive past the plan.
 fn may_share(resource: &PlanResource) -> bool {
     resource.origin == Origin::Transient && resource.exports.is_empty()
 }
