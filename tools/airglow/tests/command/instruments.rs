@@ -1,17 +1,13 @@
 //! The instruments of `render`: counts that must not change by accident, what measuring costs, and the time line.
 
 #![cfg(feature = "relight")]
-#![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
-use std::path::{Path, PathBuf};
+use crate::root;
+use std::path::Path;
 use std::process::Command;
 
 use airglow_tests::golden::assert_text;
 use serde_json::Value;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// What `render --stat` writes of a small scene.
 fn render(folder: &Path, more: &[&str]) -> Value {

@@ -1,16 +1,14 @@
 //! What a bake does with threads, cancellation, instances, masks and faulty input.
 
-mod common;
-
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::common::{Shape, bake_at};
 use airglow_bake::{
     BakeError, BelowHorizon, Executor, LightFrame, Mask, Mesh, Occluder, Occluders, Report, Settings, Silent,
     Threads, bake, unshadowed,
 };
 use airglow_math::sh::rotation::Rotation;
-use common::{Shape, bake_at};
 use glam::{Mat4, Quat, Vec3};
 
 fn settings() -> Settings {

@@ -1,14 +1,12 @@
 //! Cache files: used when sound and fitting, otherwise replaced, with the reason.
 
-mod common;
-
 use std::path::Path;
 
+use crate::common::Shape;
 use airglow_bake::cache::{
     CacheError, CacheKey, CachedBakeError, Miss, Precision, Source, bake_cached, load, store,
 };
 use airglow_bake::{BakeError, BelowHorizon, Report, Settings, Silent, Threads, Transfer};
-use common::Shape;
 use glam::Mat4;
 use std::ops::ControlFlow;
 

@@ -1,7 +1,6 @@
 //! Scenes in a medium, end to end: pictures of `render` against what the model says of them.
 
 #![cfg(all(feature = "fog", feature = "relight"))]
-#![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
 use std::path::Path;
 use std::process::Command;

@@ -1,5 +1,5 @@
 //! Shapes and comparisons that the tests share.
-#![allow(dead_code, clippy::unwrap_used, reason = "test helpers, of which each test file uses its own part")]
+#![allow(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 use airglow_bake::{Baked, Mesh, Occluder, Occluders, Settings, Silent, Threads, bake};
 use glam::{Mat4, Vec3};

@@ -1,13 +1,11 @@
 //! Bakes against closed forms and quadrature.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use crate::common::{Shape, bake_at, placements, relative, widen};
 use airglow_bake::{BelowHorizon, Occluder, Settings, unshadowed};
 use airglow_math::quadrature::gauss_legendre;
 use airglow_math::sh::{evaluate, zonal};
-use common::{Shape, bake_at, placements, relative, widen};
 use glam::{DVec3, Mat4, Quat, Vec3};
 
 const BLOCKED: Option<BelowHorizon> = Some(BelowHorizon::Blocked);

@@ -1,14 +1,10 @@
 //! The command as its users see it: exit codes, messages, and a whole road on a small scene.
 
 #![cfg(feature = "relight")]
-#![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
-use std::path::{Path, PathBuf};
+use crate::root;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn airglow(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));

@@ -1,9 +1,7 @@
 //! Bakes of a bumpy mesh against the brute-force f64 reference.
 
-mod common;
-
+use crate::common::{Shape, bake_at, relative};
 use airglow_bake::{BelowHorizon, Settings, reference};
-use common::{Shape, bake_at, relative};
 use glam::Mat4;
 
 #[test]

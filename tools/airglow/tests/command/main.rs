@@ -1,0 +1,15 @@
+//! The command as its users see it.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
+
+mod explain;
+mod fog;
+mod instruments;
+mod roads;
+
+use std::path::{Path, PathBuf};
+
+/// Of the repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
