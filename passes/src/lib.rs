@@ -23,3 +23,8 @@ pub use airglow_shadow as shadow;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;
+
+/// That of the guide does.
+#[cfg(all(doctest, feature = "fog", feature = "radiance", feature = "shadow"))]
+#[doc = include_str!("../../docs/integration.md")]
+struct Guide;
