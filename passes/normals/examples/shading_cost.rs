@@ -8,44 +8,60 @@ mod common;
 
 use std::time::Instant;
 
-use airglow_gpu::ash::vk::{BufferUsageFlags, ImageViewType};
-use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, ComputePipelineDesc, GpuError, Label, Location, Recorder,
-    Requirements, SamplerDesc, ViewDesc,
-};
+use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::{Buffer, GpuError, Label, Location, Recorder, Requirements, Sampler, SamplerDesc};
 use airglow_graph::BufferDesc;
 use airglow_math::statistics::median;
-use airglow_normals::{Bench, FitSettings, Settings};
+use airglow_normals::cost::{Shading, whole};
+use airglow_normals::{Bench, Brdf, FitSettings, Method, NormalMap, Settings, Storage};
 use airglow_tests::device::fixture_with;
-use bytemuck::{Pod, Zeroable};
 
 /// Pixels of a side.
-const SIDE: u32 = 1024;
-const ROUNDS: usize = 15;
+const SIDE: u32 = 512;
+const ROUNDS: usize = 11;
+/// The first is what all others are compared with.
+const METHODS: [Method; 6] =
+    [Method::Toksvig, Method::Lobes(1), Method::Lobes(2), Method::Lobes(4), Method::Lobes(6), Method::Taps];
 
-/// `Settings` of `cost.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct CostConstants {
-    size: [u32; 2],
-    level: f32,
-    parameter: f32,
-}
-
-macro_rules! module {
-    ($name:literal) => {
-        include_bytes!(concat!("../../../shaders/spirv/normals/cost.", $name, ".spv")).as_slice()
+/// Times every method in turn, so that what else the machine does falls on all of them, and prints their medians; the
+/// first round compiles.
+fn race(
+    bench: &Bench<'_>,
+    map: &NormalMap,
+    (sampler, output): (&Sampler, &Buffer),
+    (brdf, storage, level): (Brdf, Storage, f32),
+) -> Result<(), Box<dyn std::error::Error>> {
+    let fit = FitSettings { iterations: 8, ..Default::default() };
+    let settings = Settings { fit, storage, budget: Some(u64::MAX) };
+    let mut works = Vec::new();
+    let mut add = |name: String, method, shading: Shading| -> Result<(), Box<dyn std::error::Error>> {
+        let Some(image) = bench.kept(map, method, &settings)? else { return Ok(()) };
+        works.push((name, shading, whole(&image)?, Vec::new()));
+        Ok(())
     };
+    for method in METHODS {
+        add(method.to_string(), method, Shading::new(bench.context, method, brdf)?)?;
+    }
+    for count in [1, 4] {
+        add(format!("{count} lookups"), Method::Lobes(count), Shading::lookups(bench.context, count)?)?;
+    }
+    for round in 0..=ROUNDS {
+        for (_, shading, view, times) in &mut works {
+            let begin = Instant::now();
+            (bench.run)(&mut |recorder| shading.record(recorder, (view, sampler), output, [SIDE; 2], level))?;
+            if round > 0 {
+                times.push(begin.elapsed().as_secs_f64());
+            }
+        }
+    }
+    let lookup = if level.fract() > 0.0 { "trilinear" } else { "bilinear, one level" };
+    println!("{brdf:?}, {storage:?}, {lookup}");
+    let medians: Vec<f64> = works.iter().map(|(.., times)| median(times).unwrap_or(f64::NAN)).collect();
+    for ((method, ..), seconds) in works.iter().zip(&medians) {
+        println!("  {method:9} {:7.2} ms, {:.2} times Toksvig", 1e3 * seconds, seconds / medians[0]);
+    }
+    Ok(())
 }
-
-/// Name, lobes, Blinn-Phong's module and GGX's.
-static METHODS: [(&str, usize, [&[u8]; 2]); 5] = [
-    ("Toksvig", 1, [module!("toksvig.blinn"), module!("toksvig.ggx")]),
-    ("1 lobe", 1, [module!("LAYERS1.lobes.blinn"), module!("LAYERS1.lobes.ggx")]),
-    ("2 lobes", 2, [module!("LAYERS2.lobes.blinn"), module!("LAYERS2.lobes.ggx")]),
-    ("4 lobes", 4, [module!("LAYERS4.lobes.blinn"), module!("LAYERS4.lobes.ggx")]),
-    ("6 lobes", 6, [module!("LAYERS6.lobes.blinn"), module!("LAYERS6.lobes.ggx")]),
-];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let map = common::weave(512);
@@ -59,59 +75,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sampler = context.create_sampler(&SamplerDesc::linear("kept"))?;
     let desc = BufferDesc { size: 4 * u64::from(SIDE * SIDE), usage: BufferUsageFlags::STORAGE_BUFFER };
     let output = context.create_buffer(Label::new("example", "radiance"), &desc, Location::Device)?;
-    let bindings = [
-        BindingDesc::new(0, BindingKind::SampledImage),
-        BindingDesc::new(1, BindingKind::Sampler),
-        BindingDesc::new(2, BindingKind::StorageBuffer),
-    ];
-    for (model, (name, parameter)) in [("Blinn-Phong 50", 50.0), ("GGX 0.2", 0.2)].into_iter().enumerate() {
-        for (lookup, level) in [("bilinear, one level", 0.0), ("trilinear", 0.5)] {
-            let mut works = Vec::new();
-            for (method, lobes, modules) in &METHODS {
-                let fit = FitSettings { lobes: *lobes, iterations: 8, ..Default::default() };
-                let settings = Settings { fit, budget: Some(u64::MAX), ..Default::default() };
-                let Some(texture) = bench.texture(&map, &settings)? else { continue };
-                let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-                    name: method,
-                    spirv: &bytemuck::pod_collect_to_vec(modules[model]),
-                    bindings: &bindings,
-                    push_constant_size: size_of::<CostConstants>() as u32,
-                })?;
-                let whole = ViewDesc {
-                    dimension: ImageViewType::TYPE_2D_ARRAY,
-                    base_mip: 0,
-                    mips: texture.image.desc().mips,
-                    base_layer: 0,
-                    layers: texture.image.desc().layers,
-                };
-                works.push((*method, pipeline, texture.image.view(whole)?, Vec::new()));
-            }
-            // In turn, so that what else the machine does falls on all of them; the first round compiles.
-            for round in 0..=ROUNDS {
-                for (_, pipeline, view, times) in &mut works {
-                    let begin = Instant::now();
-                    run(&mut |recorder| {
-                        let bound = [
-                            Binding::sampled(0, view.clone()),
-                            Binding::sampler(1, &sampler),
-                            Binding::storage(2, &output),
-                        ];
-                        recorder.bind_compute(pipeline, &bound)?;
-                        let constants = CostConstants { size: [SIDE; 2], level, parameter };
-                        recorder.push_constants(&constants)?;
-                        recorder.dispatch([SIDE / 8, SIDE / 8, 1])
-                    })?;
-                    if round > 0 {
-                        times.push(begin.elapsed().as_secs_f64());
-                    }
-                }
-            }
-            println!("{name}, {lookup}");
-            let medians: Vec<f64> =
-                works.iter().map(|(.., times)| median(times).unwrap_or(f64::NAN)).collect();
-            for ((method, ..), seconds) in works.iter().zip(&medians) {
-                println!("  {method:8} {:7.2} ms, {:.2} times Toksvig", 1e3 * seconds, seconds / medians[0]);
-            }
+    for brdf in [Brdf::BlinnPhong { exponent: 50.0 }, Brdf::Ggx { alpha: 0.2 }] {
+        for (storage, level) in [(Storage::F16, 0.0), (Storage::F16, 0.5), (Storage::Snorm8, 0.0)] {
+            race(&bench, &map, (&sampler, &output), (brdf, storage, level))?;
         }
     }
     Ok(())

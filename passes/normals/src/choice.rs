@@ -16,14 +16,15 @@ const TEXELS: u32 = 24;
 const LEVELS: std::ops::RangeInclusive<usize> = 2..=5;
 /// Lights and views of a texel, every other near the highlight.
 const ROWS: u32 = 12;
-/// What is tried, in the order of what it takes.
-const TRIED: [Method; 6] = [
+/// What is tried, in the order of what it takes: bytes, then time.
+const TRIED: [Method; 7] = [
     Method::Lobes(1),
     Method::Lobes(2),
     Method::Harmonics(3),
     Method::Lobes(4),
     Method::Harmonics(4),
     Method::Lobes(6),
+    Method::Taps,
 ];
 /// What is built unless something else was chosen.
 const DEFAULT: Method = Method::Lobes(4);

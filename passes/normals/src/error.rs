@@ -37,7 +37,7 @@ pub enum NormalsError {
     },
     /// A method that has no code on the device.
     #[error(
-        "normals: there is no method `{method}` on the device: give vmf:1, vmf:2, vmf:4, vmf:6, sh:3, sh:4, sh:5, mip, length, \
+        "normals: there is no method `{method}` on the device: give vmf:1, vmf:2, vmf:4, vmf:6, vmf:4x4, sh:3, sh:4, sh:5, mip, length, \
          toksvig, roughness, geometric, lean or default"
     )]
     Method {

@@ -10,7 +10,7 @@ use crate::bench::{Bench, LevelLobes, Row};
 use crate::brdf::{Brdf, Directions};
 use crate::fit::FitSettings;
 use crate::map::NormalMap;
-use crate::method::Method;
+use crate::method::{Method, below};
 use crate::mixture::WeightedLobe;
 use crate::reference;
 use crate::settings::Settings;
@@ -61,6 +61,7 @@ pub fn texels(
         let chosen: Vec<&TexelRow> = places.iter().map(|&place| &rows[place]).collect();
         let values = match method {
             Method::Lobes(lobes) => of_lobes(bench, map, lobes, &chosen)?,
+            Method::Taps => of_taps(bench, map, &chosen)?,
             _ => of_rival(bench, map, method, &chosen)?,
         };
         for (place, value) in places.into_iter().zip(values) {
@@ -82,6 +83,17 @@ fn of_lobes(
     let levels = bench.build(map, &Settings { fit, budget: Some(u64::MAX), ..Default::default() })?;
     let shaded = rows.iter().map(|row| row.with_lobes(map, lobes, &levels));
     bench.radiance(&shaded.collect::<Result<Vec<_>, _>>()?)
+}
+
+/// The mean of the four texels below each.
+fn of_taps(bench: &Bench<'_>, map: &NormalMap, rows: &[&TexelRow]) -> Result<Vec<f32>, NormalsError> {
+    let four = |row: &&TexelRow| {
+        let row = **row;
+        below(map, [row.level, row.x, row.y]).map(|[level, x, y]| TexelRow { level, x, y, ..row })
+    };
+    let finer: Vec<TexelRow> = rows.iter().flat_map(four).collect();
+    let values = of_lobes(bench, map, 4, &finer.iter().collect::<Vec<_>>())?;
+    Ok(values.as_chunks::<4>().0.iter().map(|four| 0.25 * four.iter().sum::<f32>()).collect())
 }
 
 /// By a rival; where a single texel is seen, its normal, which every method shades alike.

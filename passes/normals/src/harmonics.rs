@@ -41,13 +41,13 @@ impl Harmonics {
         &self.coefficients
     }
 
-    /// Radiance of the distribution. Lambert converges as the cosine does. Other reflections are the convolved BRDF times
-    /// the mean cosine, both at least 0: the product of the two is no convolution.
+    /// Radiance of the distribution. Other reflections than Lambert's are the convolved BRDF times the mean cosine, both at
+    /// least 0: the product of the two is no convolution.
     ///
     /// # Errors
     /// [`NormalsError::Math`].
     pub fn radiance(&self, brdf: Brdf, directions: Directions) -> Result<f64, NormalsError> {
-        let cosine = self.convolved(&clamped_cosine(self.order)?, directions.light)?.max(0.0);
+        let cosine = self.mean_cosine(directions.light)?;
         if brdf == Brdf::Lambert {
             return Ok(cosine * FRAC_1_PI);
         }
@@ -58,12 +58,33 @@ impl Harmonics {
         Ok(cosine * reflected.max(0.0))
     }
 
+    /// The mean of (n.l)+. Five bands and more hold the clamped cosine to 2 %. Three and four cannot; but they hold mean and
+    /// mean square of n.l exactly, and n.l is taken as spread evenly about its mean.
+    fn mean_cosine(&self, light: glam::DVec3) -> Result<f64, NormalsError> {
+        if !(3..=4).contains(&self.order) {
+            return Ok(self.convolved(&clamped_cosine(self.order)?, light)?.max(0.0));
+        }
+        let mut factors = vec![0.0; self.order];
+        factors[1] = 4.0 / 3.0 * PI;
+        let mean = self.convolved(&factors, light)?;
+        (factors[1], factors[2]) = (0.0, 8.0 / 15.0 * PI);
+        let square = 1.0 / 3.0 + self.convolved(&factors, light)?;
+        Ok(rectified_evenly(mean, square))
+    }
+
     /// `sum of A_l gamma_lm Y_lm(direction)`.
     fn convolved(&self, factors: &[f64], direction: glam::DVec3) -> Result<f64, NormalsError> {
         let mut kernel = vec![0.0; self.coefficients.len()];
         sh::zonal::rotate_to_direction(factors, direction, &mut kernel)?;
         Ok(kernel.iter().zip(&self.coefficients).map(|(a, b)| a * b).sum())
     }
+}
+
+/// The mean of `max(0, x)` for an x of that mean and mean square, spread evenly about its mean.
+fn rectified_evenly(mean: f64, square: f64) -> f64 {
+    let reach = (3.0 * (square - mean * mean)).max(1e-12).sqrt();
+    let above = (mean + reach).max(0.0);
+    if mean > reach { mean } else { 0.25 * above * above / reach }
 }
 
 /// Band factors `A_l = 2 pi Int f(t) P_l(t) dt` of a BRDF about the half vector, by Gauss and Legendre's rule on pieces that

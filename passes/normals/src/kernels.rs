@@ -163,7 +163,7 @@ enum Kept {
 /// [`NormalsError::Method`] for lobes, which are no average, and for orders without kernel.
 pub(crate) fn average(method: Method) -> Result<(Vec<u32>, usize), NormalsError> {
     let kept = match method {
-        Method::Lobes(_) => None,
+        Method::Lobes(_) | Method::Taps => None,
         Method::Harmonics(order) => Some(Kept::Harmonics(order)),
         Method::Lean => Some(Kept::Lean),
         _ => Some(Kept::Mean),
@@ -209,6 +209,6 @@ pub(crate) fn rows() -> Vec<u32> {
 }
 
 /// Little-endian words of a module's bytes.
-fn words(bytes: &[u8]) -> Vec<u32> {
+pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }

@@ -18,6 +18,9 @@ use crate::shade;
 pub enum Method {
     /// `vmf:J`: a mixture of J lobes, 1, 2, 4 or 6.
     Lobes(usize),
+    /// `vmf:4x4`: the same of 4 lobes at the four texels of the level below, each shaded by itself: no more memory, four
+    /// times the shading.
+    Taps,
     /// `sh:n`: spherical harmonics of n bands, 3 to 5.
     Harmonics(usize),
     /// `mip`: the mean normal, scaled to length 1.
@@ -36,11 +39,12 @@ pub enum Method {
 
 impl Method {
     /// Every method on the device.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Lobes(1),
         Self::Lobes(2),
         Self::Lobes(4),
         Self::Lobes(6),
+        Self::Taps,
         Self::Harmonics(3),
         Self::Harmonics(4),
         Self::Harmonics(5),
@@ -57,6 +61,7 @@ impl Method {
     pub fn numbers(self) -> usize {
         match self {
             Self::Lobes(lobes) => 4 * lobes,
+            Self::Taps => 16,
             Self::Harmonics(order) => order * order,
             Self::Mip | Self::Length | Self::Toksvig | Self::Roughness | Self::Geometric => 3,
             Self::Lean => 5,
@@ -81,6 +86,11 @@ impl Method {
                 let mixture = fit(&footprint, &FitSettings { lobes, ..Default::default() })?;
                 shade::radiance(&mixture, brdf, directions)
             }
+            Self::Taps => {
+                let four = below(map, [level, x, y]);
+                let four = four.map(|texel| Self::Lobes(4).radiance(map, texel, brdf, directions));
+                four.into_iter().sum::<Result<f64, _>>()? / 4.0
+            }
             Self::Harmonics(order) => Harmonics::new(order, &footprint)?.radiance(brdf, directions)?,
             Self::Mip => rivals::mip(mean, true, brdf, directions),
             Self::Length => rivals::mip(mean, false, brdf, directions),
@@ -102,10 +112,18 @@ impl Method {
     }
 }
 
+/// Level, column and row of the four texels under one; of a texel of the map, itself.
+pub(crate) fn below(map: &NormalMap, [level, x, y]: [usize; 3]) -> [[usize; 3]; 4] {
+    let Some(finer) = level.checked_sub(1) else { return [[level, x, y]; 4] };
+    let [width, height] = map.size(finer);
+    [0, 1, 2, 3].map(|i| [finer, (2 * x + i % 2).min(width - 1), (2 * y + i / 2).min(height - 1)])
+}
+
 impl fmt::Display for Method {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Lobes(lobes) => write!(formatter, "vmf:{lobes}"),
+            Self::Taps => formatter.write_str("vmf:4x4"),
             Self::Harmonics(order) => write!(formatter, "sh:{order}"),
             Self::Mip => formatter.write_str("mip"),
             Self::Length => formatter.write_str("length"),

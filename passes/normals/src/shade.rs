@@ -9,13 +9,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::brdf::{Brdf, Directions};
+use crate::ggx::{self, Gaussian};
 use crate::mixture::{Mixture, WeightedLobe};
 use crate::vmf::{Lobe, mean_length};
-
-/// Distance in ln u of the Gaussians that make up the GGX distribution; the error is 0.4 % at 1.
-const STEP: f64 = 1.0;
-/// Of the cosine of normal and half vector where an exponential touches: behind the horizon there is nothing to touch.
-const LEAST_TOUCH: f64 = 0.05;
 
 /// Radiance of a mixture, as [`crate::reference::radiance`] of its normals.
 #[must_use]
@@ -48,27 +44,29 @@ fn blinn_phong(lobe: &Lobe, exponent: f64, light: DVec3, half: DVec3) -> f64 {
 
 /// The normals of a lobe that reflect by GGX's `D(n.h)`: the integral, and its product with their mean.
 ///
-/// GGX is a blend of Beckmann-like lobes of all widths: with `y = (1/alpha^2 - 1) (1 - (n.h)^2)`,
-/// `1 / (1 + y)^2 = Int u e^(-u) e^(-u y) du`, here by the trapezoidal rule in ln u. One exponential alone would lose
-/// the tails, which bring most of the reflection of broad lobes. `exp(-k (1 - (n.h)^2))` is taken as the exponential
-/// that touches it where the narrower one before it lay.
+/// GGX is a blend of Gaussians `exp(-q (1 - (n.h)^2))` of all widths; one alone would lose the tails, which bring most of the
+/// reflection of broad lobes. Each is multiplied with the lobe as if both were Gaussians about their axes: a broad one sees
+/// of the lobe its variance across, `r / k`, by squared sines; a narrow one its height and its own shape, by chords. The mean of
+/// the product lies between the axes by the share that the lobe keeps of its width.
 fn reflecting_ggx(lobe: &Lobe, alpha: f64, half: DVec3) -> WeightedLobe {
     let narrowing = 1.0 / (alpha * alpha) - 1.0;
-    let count = ((1.0 + narrowing).ln() / STEP).ceil() as usize + 5;
-    let (mut sum, mut touch) = (WeightedLobe::default(), 1.0);
-    for i in 0..count {
-        let u = (1.5 - STEP * i as f64).exp();
-        let k = u * narrowing;
-        let sharpness = 2.0 * k * touch;
-        let (logarithm, product) = lobe.log_times(sharpness, half);
-        touch = product.axis.dot(half).max(LEAST_TOUCH);
-        let height = -u - k * (1.0 - touch * touch) + sharpness * (1.0 - touch);
-        let integral = u * u * (logarithm + height).exp();
+    let (k, r) = (lobe.concentration, mean_length(lobe.concentration));
+    let apart = 1.0 - lobe.axis.dot(half);
+    let sine = apart * (2.0 - apart);
+    let (variance, opening) = (r / k, 2.0 / (1.0 + k + k * r));
+    let mut sum = WeightedLobe::default();
+    for Gaussian { rate, height } in ggx::gaussians(alpha) {
+        let rate = rate * narrowing;
+        let narrow = 1.0 - 1.0 / (1.0 + 2.0 * rate * variance);
+        let kept = 1.0 / (1.0 + 2.0 * rate * (variance + (opening - variance) * narrow));
+        let distance = sine + narrow * (2.0 * apart * k * opening - sine);
+        let integral = height * kept * (-rate * distance * kept).exp();
+        let length = (1.0 - (1.0 - r) * kept) * (1.0 + kept * (1.0 - kept) * apart);
         sum.weight += integral;
-        sum.moment += integral * mean_length(product.concentration) * product.axis;
+        sum.moment += integral * length * (kept * lobe.axis + (1.0 - kept) * half);
     }
-    let scale = STEP / (PI * alpha * alpha);
-    WeightedLobe { weight: scale * sum.weight, moment: scale * sum.moment }
+    let peak = 1.0 / (PI * alpha * alpha);
+    WeightedLobe { weight: peak * sum.weight, moment: peak * sum.moment }
 }
 
 /// A quarter of what reflects times its mean cosine.

@@ -35,17 +35,17 @@ fn normals(concentration: f64, rings: usize) -> Vec<DVec3> {
 
 #[test]
 fn concentration_inverts_the_mean_length() {
-    let (mut exact, mut one_step): (f64, f64) = (0.0, 0.0);
+    let (mut exact, mut polynomial): (f64, f64) = (0.0, 0.0);
     for i in 0..=2000 {
         let k = 10_f64.powf(-1.5 + 6.5 * f64::from(i) / 2000.0);
         let r = vmf::mean_length(k);
         exact = exact.max((vmf::concentration(r) / k - 1.0).abs());
         if (0.01..=0.999).contains(&r) {
-            one_step = one_step.max((vmf::concentration_one_step(r) / k - 1.0).abs());
+            polynomial = polynomial.max((vmf::concentration_by_polynomial(r) / k - 1.0).abs());
         }
     }
-    println!("concentration from mean length: exact {exact:e}, one step {one_step:e}");
-    assert!(exact < 1e-6 && one_step <= 2.5e-3, "{exact:e} {one_step:e}");
+    println!("concentration from mean length: exact {exact:e}, by a polynomial {polynomial:e}");
+    assert!(exact < 1e-6 && polynomial <= 2.5e-3, "{exact:e} {polynomial:e}");
 }
 
 #[test]

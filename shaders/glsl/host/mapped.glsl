@@ -6,7 +6,10 @@
 // FILTER_LEAN     mean and moments of the slope (Olano and Baker 2010)
 // FILTER_MIP      the mean normal, scaled to length 1
 // FILTER_TEXELS   the map itself at every distance: what many samples a pixel make the truth
+// FILTER_HARMONICS nine coefficients of the normals in three layers, for matt surfaces
+// MAPPED_PARTS 4: a pixel's footprint in quarters, each looked up and shaded by itself; 1: as a whole
 
+#include "normals/harmonics.glsl"
 #include "normals/microfacet.glsl"
 
 layout(set = 0, binding = 5) uniform texture2D normal_map; // RGB = normal * 0.5 + 0.5
@@ -30,7 +33,8 @@ vec3 map_normal(vec2 uv)
     return dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0, 0.0, 1.0);
 }
 
-Mapped mapped_at(vec2 uv)
+// Of a footprint about a place, given by its two sides.
+Mapped mapped_at(vec2 uv, vec2 across, vec2 along)
 {
     Mapped mapped;
     mapped.normal = map_normal(uv);
@@ -38,8 +42,6 @@ Mapped mapped_at(vec2 uv)
     for (int i = 0; i < MAPPED_LAYERS; ++i) { mapped.kept[i] = vec4(0.0); }
 #ifndef FILTER_TEXELS
     vec2 size = vec2(textureSize(sampler2D(normal_map, normal_map_sampler), 0));
-    vec2 across = dFdx(uv);
-    vec2 along = dFdy(uv);
     float a = length(across * size);
     float b = length(along * size);
     vec2 longer = a > b ? across : along;
@@ -76,24 +78,35 @@ vec2 normal_reflected(vec3 normal, float alpha, vec3 l, vec3 v, vec3 h)
     return nl * vec2(1.0 / PI, normal_facets(nh, alpha) * normals_masking(alpha, nl, max(dot(normal, v), 1e-4)));
 }
 
-// The same of what is kept of the distribution.
-vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
+// The mean normal, whose length widens the reflection.
+vec2 mean_reflected(vec3 mean, float alpha, vec3 l, vec3 v, vec3 h)
 {
-#if defined(FILTER_LOBES)
-    vec2 sum = vec2(0.0);
-    for (int i = 0; i < MAPPED_LAYERS; ++i) {
-        vec4 lobe = mapped.kept[i];
-        if (lobe.w > 1e-4) {
-            sum += vec2(normals_lambert(lobe, l), normals_torrance_sparrow(lobe, alpha, l, v, h));
-        }
-    }
-    return sum;
-#elif defined(FILTER_TOKSVIG)
-    vec3 mean = mapped.kept[0].xyz;
     float size = clamp(length(mean), 1e-3, 1.0);
     float exponent = 2.0 / (alpha * alpha) - 2.0;
     float lowered = exponent * size / (size + exponent * (1.0 - size));
     return normal_reflected(mean / size, sqrt(2.0 / (lowered + 2.0)), l, v, h);
+}
+
+// The same of what is kept of the distribution.
+vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
+{
+#if defined(FILTER_LOBES)
+    NormalsGgx ggx = normals_ggx_of(alpha);
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < MAPPED_LAYERS; ++i) {
+        vec4 lobe = mapped.kept[i];
+        if (lobe.w > 1e-4) {
+            sum += vec2(normals_lambert(lobe, l), normals_torrance_sparrow(lobe, ggx, alpha, l, v, h));
+        }
+    }
+    return sum;
+#elif defined(FILTER_TOKSVIG)
+    return mean_reflected(mapped.kept[0].xyz, alpha, l, v, h);
+#elif defined(FILTER_HARMONICS)
+#define COEFFICIENT(i) mapped.kept[(i) / 4][(i) % 4]
+    // The first band is the mean normal, in another order and with other signs.
+    vec3 mean = 2.0466534 * vec3(-COEFFICIENT(3), -COEFFICIENT(1), COEFFICIENT(2));
+    return vec2(NORMALS_HARMONIC_LAMBERT(l, COEFFICIENT), mean_reflected(mean, alpha, l, v, h).y);
 #elif defined(FILTER_LEAN)
     vec2 mean = mapped.kept[0].xy;
     vec3 moments = mapped.kept[1].xyz; // xx, xy, yy
@@ -117,6 +130,37 @@ vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
 #endif
 }
 
+// How a pixel sees the surface: tangent, bitangent and normal in the world, the view in these axes, and the material.
+struct Seen {
+    mat3 axes;
+    vec3 view;
+    float alpha;
+    vec3 f0;
+    vec3 diffuse; // share that does not mirror, times the colour
+};
+
+// Radiance of the scene's lights; `surface` is metallic and roughness.
+vec3 mapped_lit(Mapped mapped, Seen seen, vec3 position)
+{
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < lights.count.x; ++i) {
+        vec3 towards;
+        vec3 irradiance = light_irradiance(lights.lights[i], position, towards);
+        vec3 l = towards * seen.axes;
+        vec3 h = normalize(l + seen.view);
+        vec2 reflected = vec2(0.0);
+        if (mapped.share > 0.0) {
+            reflected += mapped.share * normal_reflected(mapped.normal, seen.alpha, l, seen.view, h);
+        }
+        if (mapped.share < 1.0) {
+            reflected += (1.0 - mapped.share) * kept_reflected(mapped, seen.alpha, l, seen.view, h);
+        }
+        vec3 fresnel = seen.f0 + (1.0 - seen.f0) * pow(clamp(1.0 - dot(l, h), 0.0, 1.0), 5.0);
+        sum += irradiance * ((1.0 - fresnel) * seen.diffuse * reflected.x + fresnel * reflected.y);
+    }
+    return sum;
+}
+
 // Radiance towards the eye; `surface` is metallic and roughness, `tangent` has the sign of the bitangent as w.
 vec3 lights_reflected_mapped(vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4 tangent, vec3 position, vec3 eye)
 {
@@ -125,21 +169,23 @@ vec3 lights_reflected_mapped(vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4
     vec3 b = tangent.w * cross(n, t);
     vec3 towards_eye = normalize(eye - position);
     if (dot(n, towards_eye) < 0.0) { n = -n; }
-    vec3 v = vec3(dot(towards_eye, t), dot(towards_eye, b), dot(towards_eye, n));
-    float alpha = max(surface.y * surface.y, 0.002);
-    vec3 f0 = mix(vec3(0.04), base, surface.x);
-    Mapped mapped = mapped_at(uv);
+    Seen seen;
+    seen.axes = mat3(t, b, n);
+    seen.view = towards_eye * seen.axes;
+    seen.alpha = max(surface.y * surface.y, 0.002);
+    seen.f0 = mix(vec3(0.04), base, surface.x);
+    seen.diffuse = (1.0 - surface.x) * base;
+    vec2 across = dFdx(uv);
+    vec2 along = dFdy(uv);
+#if MAPPED_PARTS == 4
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < lights.count.x; ++i) {
-        vec3 towards;
-        vec3 irradiance = light_irradiance(lights.lights[i], position, towards);
-        vec3 l = vec3(dot(towards, t), dot(towards, b), dot(towards, n));
-        vec3 h = normalize(l + v);
-        vec2 reflected = vec2(0.0);
-        if (mapped.share > 0.0) { reflected += mapped.share * normal_reflected(mapped.normal, alpha, l, v, h); }
-        if (mapped.share < 1.0) { reflected += (1.0 - mapped.share) * kept_reflected(mapped, alpha, l, v, h); }
-        vec3 fresnel = f0 + (1.0 - f0) * pow(clamp(1.0 - dot(l, h), 0.0, 1.0), 5.0);
-        sum += irradiance * ((1.0 - fresnel) * (1.0 - surface.x) * base * reflected.x + fresnel * reflected.y);
+    for (int i = 0; i < 4; ++i) {
+        vec2 side = 0.5 * vec2(ivec2(i & 1, i >> 1)) - 0.25;
+        Mapped mapped = mapped_at(uv + side.x * across + side.y * along, 0.5 * across, 0.5 * along);
+        sum += 0.25 * mapped_lit(mapped, seen, position);
     }
     return sum;
+#else
+    return mapped_lit(mapped_at(uv, across, along), seen, position);
+#endif
 }

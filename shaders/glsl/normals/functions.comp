@@ -8,8 +8,9 @@
 layout(local_size_x = 64) in;
 
 struct Row {
-    vec4 light;       // w: 0 Beckmann, 1 Torrance-Sparrow, 2 zonal, 3 lobe under harmonics, 4 harmonics under a light
-    vec4 half_vector; // w: alpha
+    vec4 light;       // w: 0 Beckmann, 1 Torrance-Sparrow, 2 zonal, 3 lobe under harmonics, 4 harmonics under a light,
+                      // 5 glossy lobe under harmonics
+    vec4 half_vector; // w: alpha, or the sharpness of the reflection
     vec4 view;
     vec4 lobe;
     vec4 values[16];  // zonal coefficients, or nine of the light (x) or of the normals (x)
@@ -47,14 +48,18 @@ void main()
     if (kind == 0.0) {
         value = normals_beckmann(lobe, alpha, light, h);
     } else if (kind == 1.0) {
-        value = normals_torrance_sparrow(lobe, alpha, light, rows.values[row].view.xyz, h);
+        value = normals_torrance_sparrow(lobe, normals_ggx_of(alpha), alpha, light, rows.values[row].view.xyz, h);
     } else if (kind == 2.0) {
         value = normals_zonal(lobe, light, h);
     } else if (kind == 3.0) {
         NormalsLobe seen = normals_lobe(lobe);
         value = lobe.w * NORMALS_HARMONIC_SUM(seen.axis, normals_lambert_bands(seen), COEFFICIENT);
+    } else if (kind == 4.0) {
+        value = NORMALS_HARMONIC_LAMBERT(light, COEFFICIENT);
     } else {
-        value = NORMALS_HARMONIC_SUM(light, NORMALS_COSINE_BANDS, COEFFICIENT);
+        NormalsGloss gloss = normals_gloss(normals_lobe(lobe), alpha, rows.values[row].view.xyz);
+        vec3 bands = normals_gloss_bands(gloss);
+        value = lobe.w * gloss.weight * NORMALS_HARMONIC_SUM(gloss.direction, bands, COEFFICIENT);
     }
     radiance.values[row] = value;
 }

@@ -28,7 +28,7 @@ const vec3 NORMALS_COSINE_BANDS = vec3(1.0, 2.0 / 3.0, 0.25);
 // By how much a lobe dims each band.
 vec3 normals_lobe_bands(NormalsLobe lobe)
 {
-    float r = normals_mean_length(lobe.concentration);
+    float r = lobe.mean;
     return vec3(1.0, r, clamp(1.0 - 3.0 * r / lobe.concentration, 0.0, 1.0));
 }
 
@@ -37,6 +37,55 @@ vec3 normals_lobe_bands(NormalsLobe lobe)
 vec3 normals_lambert_bands(NormalsLobe lobe)
 {
     return NORMALS_COSINE_BANDS * normals_lobe_bands(lobe);
+}
+
+// The mean of max(0, x) for an x of which mean and mean square are given, spread evenly about the mean.
+float normals_rectified_evenly(float mean, float square)
+{
+    float reach = sqrt(max(3.0 * (square - mean * mean), 1e-12));
+    float above = max(mean + reach, 0.0);
+    return mean > reach ? mean : 0.25 * above * above / reach;
+}
+
+// Lambert, albedo 1, of normals given as nine coefficients under a light of irradiance 1: three bands hold mean and mean
+// square of n.l exactly, where the clamped cosine cut to three bands would be off by itself.
+#define NORMALS_HARMONIC_LAMBERT(light, COEFFICIENT) \
+    (normals_rectified_evenly( \
+        NORMALS_HARMONIC_SUM(light, vec3(0.0, 4.0 / 3.0 * PI, 0.0), COEFFICIENT), \
+        1.0 / 3.0 + NORMALS_HARMONIC_SUM(light, vec3(0.0, 0.0, 8.0 / 15.0 * PI), COEFFICIENT)) \
+        / PI)
+
+// What a lobe reflects of light all around, as an exponential about a direction.
+struct NormalsGloss {
+    vec3 direction;
+    float sharpness;
+    float weight; // of the light about that direction
+};
+
+// A lobe under the reflection `exp(sharpness (n.h - 1)) (n.l)+` towards `view`: convolved, then turned from half vectors to
+// lights, which lie twice as far apart across the plane of view and normal and as far as its cosine says along it (Wang,
+// Ren, Gong, Snyder and Guo, "All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance", 2009, section 4).
+NormalsGloss normals_gloss(NormalsLobe lobe, float sharpness, vec3 view)
+{
+    float k = lobe.concentration;
+    float nv = max(dot(lobe.axis, view), 0.05);
+    NormalsGloss gloss;
+    gloss.direction = 2.0 * dot(lobe.axis, view) * lobe.axis - view;
+    float half_vectors = k * sharpness / (k + sharpness);
+    gloss.sharpness = max(half_vectors / (4.0 * nv), NORMALS_MIN_CONCENTRATION);
+    float both = k + sharpness;
+    float cosine = normals_clamped_cosine(both, 1.0 - 1.0 / max(both, 1.0), dot(lobe.axis, gloss.direction));
+    gloss.weight = k / both * TWO_PI * normals_opening(gloss.sharpness) * cosine;
+    return gloss;
+}
+
+// Its bands: with NORMALS_HARMONIC_SUM about its direction and the light's coefficients, times its weight, this is its
+// radiance.
+vec3 normals_gloss_bands(NormalsGloss gloss)
+{
+    float k = gloss.sharpness;
+    float r = normals_mean_length(k);
+    return vec3(1.0, r, k < 0.1 ? 0.0 : clamp(1.0 - 3.0 * r / k, 0.0, 1.0));
 }
 
 #endif

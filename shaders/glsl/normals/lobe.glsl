@@ -16,39 +16,32 @@ const float NORMALS_MAX_CONCENTRATION = 1e7;
 struct NormalsLobe {
     vec3 axis;
     float concentration;
+    float mean; // length of its mean vector
 };
 
-// coth k - 1/k, and its limits where these cancel.
+// coth k - 1/k, within 2e-3, and 1 minus it within 2 %.
 float normals_mean_length(float k)
 {
-    float square = k * k;
-    if (k < 0.5) { return k / 3.0 * (1.0 - square / 15.0 * (1.0 - square * (2.0 / 21.0))); }
-    float decay = exp(-2.0 * k);
-    return (1.0 + decay) / (1.0 - decay) - 1.0 / k;
+    float square = k * k * (0.5028762 + 0.2351182 * k);
+    return (k + square) / (3.0 + 1.5689180 * k + k * k * (0.7379943 + 0.2351182 * k));
 }
 
-// The concentration of a mean vector of length r, within 2.5e-3: Banerjee's formula and one step of Newton's method; past
-// 0.9, where coth is 1 to 4e-9, in closed form.
-float normals_concentration(float r)
+// The concentration of a mean vector of length r, within 1.6e-3: k (1 - r) / r goes from 3 to 1 as r goes from 0 to 1, here
+// by a polynomial; `missing` is 1 - r with all its digits.
+float normals_concentration(float r, float missing)
 {
-    float k;
-    if (r > 0.9) {
-        k = 1.0 / max(1.0 - r, 1e-7);
-    } else {
-        r = max(r, 0.0);
-        k = max(r * (3.0 - r * r) / (1.0 - r * r), NORMALS_MIN_CONCENTRATION);
-        float found = normals_mean_length(k);
-        float slope = 1.0 - found * found - 2.0 * found / k;
-        k -= (found - r) / slope;
-    }
-    return clamp(k, NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
+    float bend = 1.9952537 + r * (-0.9115766 + r * (0.5581401 - 0.7153818 * r));
+    return clamp(r * (1.0 + missing * bend) / max(missing, 1e-7), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
 }
 
 NormalsLobe normals_lobe(vec4 stored)
 {
-    float moment = length(stored.xyz);
-    vec3 axis = moment > 0.0 ? stored.xyz / moment : vec3(0.0, 0.0, 1.0);
-    return NormalsLobe(axis, normals_concentration(stored.w > 0.0 ? moment / stored.w : 0.0));
+    float squared = dot(stored.xyz, stored.xyz);
+    if (squared <= 0.0 || stored.w <= 0.0) { return NormalsLobe(vec3(0.0, 0.0, 1.0), NORMALS_MIN_CONCENTRATION, 0.0); }
+    float inverse = inversesqrt(squared);
+    float size = squared * inverse;
+    float r = min(size / stored.w, 1.0);
+    return NormalsLobe(stored.xyz * inverse, normals_concentration(r, max(1.0 - r, 0.0)), r);
 }
 
 // (1 - exp(-2 k)) / k.
@@ -64,34 +57,64 @@ float normals_versine(vec3 a, vec3 b)
     return 0.5 * dot(between, between);
 }
 
-// The lobe that a lobe becomes times exp(sharpness (n.direction - 1)), and the integral of the product as
-// factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes into the exponent.
-NormalsLobe normals_times(NormalsLobe lobe, float sharpness, vec3 direction, out float factor, out float exponent)
+// A lobe times exp(sharpness (n.direction - 1)), again a lobe, whose axis is `own` times the lobe's and `other` times the
+// direction. Its integral is factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes
+// into the exponent.
+struct NormalsProduct {
+    float concentration;
+    float mean;
+    float own;
+    float other;
+    float apart; // 1 - cosine of its axis and the direction
+    float factor;
+    float exponent;
+};
+
+// `apart`: 1 - cosine of the lobe's axis and the direction.
+NormalsProduct normals_times(NormalsLobe lobe, float sharpness, float apart)
 {
+    const float least = 0.05; // of a concentration: products of what lies opposite, of which nothing is left
     float k = lobe.concentration;
-    vec3 sum = k * lobe.axis + sharpness * direction;
-    float size = max(length(sum), 1e-6);
-    exponent = -2.0 * k * sharpness * normals_versine(lobe.axis, direction) / (size + k + sharpness);
-    factor = normals_opening(size) / normals_opening(k);
-    return NormalsLobe(sum / size, size);
+    float both = k + sharpness;
+    float across = 2.0 * k * sharpness * apart;
+    float size = max(sqrt(max(both * both - across, 0.0)), least);
+    float inverse = 1.0 / size;
+    NormalsProduct product;
+    product.concentration = size;
+    product.mean = normals_mean_length(size);
+    product.own = k * inverse;
+    product.other = sharpness * inverse;
+    product.apart = product.own * product.own * apart * (2.0 - apart)
+        / max(1.0 + product.other + product.own * (1.0 - apart), 1e-3);
+    // (1 - exp(-2 k)) / k = 2 / (1 + k + k r), of both.
+    product.factor = (1.0 + k + k * lobe.mean) / (1.0 + size + size * product.mean);
+    product.exponent = -across / (size + both);
+    return product;
 }
 
-// Mean of the clamped cosine over a lobe, n.light taken as normally distributed with the lobe's mean and variance.
+// The mean of max(0, x) for a normally distributed x, within 4e-4 deviations.
+float normals_rectified(float mean, float deviation)
+{
+    float x = abs(mean) / deviation;
+    float t = max(1.0 - x / 4.5983302, 0.0);
+    t *= t;
+    t *= t;
+    return max(mean, 0.0) + deviation * t * t * (0.3989423 + 0.1949854 * x);
+}
+
+// Mean of the clamped cosine over a lobe of which concentration, length of the mean and n.light on the axis are given,
+// n.light taken as normally distributed with the lobe's mean and variance.
+float normals_clamped_cosine(float k, float r, float cosine)
+{
+    float across = r / k;
+    float along = max(1.0 - r * r - 2.0 * across, 0.0);
+    float variance = along * cosine * cosine + across * max(1.0 - cosine * cosine, 0.0);
+    return normals_rectified(r * cosine, sqrt(max(variance, 1e-14)));
+}
+
 float normals_clamped_cosine(NormalsLobe lobe, vec3 light)
 {
-    float k = max(lobe.concentration, NORMALS_MIN_CONCENTRATION);
-    float r = normals_mean_length(k);
-    float cosine = dot(lobe.axis, light);
-    float along = k > 20.0 ? 1.0 / (k * k) : 1.0 - r * r - 2.0 * r / k;
-    float variance = along * cosine * cosine + r / k * max(1.0 - cosine * cosine, 0.0);
-    float deviation = sqrt(max(variance, 1e-14));
-    float x = r * cosine / deviation;
-    float bell = exp(-0.5 * x * x) * 0.3989422804;
-    // Abramowitz and Stegun 26.2.17.
-    float t = 1.0 / (1.0 + 0.2316419 * abs(x));
-    float tail = bell * t
-        * (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
-    return max(r * cosine * (x < 0.0 ? tail : 1.0 - tail) + deviation * bell, 0.0);
+    return normals_clamped_cosine(lobe.concentration, lobe.mean, dot(lobe.axis, light));
 }
 
 // Lambert, albedo 1: the mean of (n.l)+ / pi.
@@ -100,23 +123,18 @@ float normals_lambert(vec4 stored, vec3 light)
     return stored.w * normals_clamped_cosine(normals_lobe(stored), light) / PI;
 }
 
-// ln(1 - x) with all digits where x is small.
-float normals_log_one_minus(float x)
-{
-    return x < 0.02 ? -x * (1.0 + x * (0.5 + x * (1.0 / 3.0 + 0.25 * x))) : log(1.0 - x);
-}
-
 // The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis.
 float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
 {
     float sharpness = exponent + 1.0;
-    float factor;
-    float fall;
-    NormalsLobe product = normals_times(normals_lobe(stored), sharpness, half_vector, factor, fall);
-    float x = normals_versine(product.axis, half_vector);
-    if (x >= 1.0) { return 0.0; }
-    float integral = factor * exp(fall + exponent * normals_log_one_minus(x) + sharpness * x);
-    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * normals_clamped_cosine(product, light);
+    NormalsLobe lobe = normals_lobe(stored);
+    NormalsProduct product = normals_times(lobe, sharpness, normals_versine(lobe.axis, half_vector));
+    float x = product.apart;
+    float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * x;
+    float integral = product.factor * exp(product.exponent + height);
+    float cosine = product.own * dot(lobe.axis, light) + product.other * dot(half_vector, light);
+    cosine = normals_clamped_cosine(product.concentration, product.mean, cosine);
+    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * cosine;
 }
 
 #endif

@@ -10,33 +10,63 @@
 
 #include "normals/lobe.glsl"
 
-// Distance in ln u of the Gaussians that make up GGX: it is 0.4 % off at 1.
-const float NORMALS_GGX_STEP = 1.0;
-// Of the cosine of normal and half vector where an exponential touches.
-const float NORMALS_LEAST_TOUCH = 0.05;
+// GGX as four Gaussians, narrowest first: `1 / (1 + y)^2` is the sum of heights times `exp(-rates y)`, `y = (1 / alpha^2 - 1)
+// (1 - (n.h)^2)`.
+struct NormalsGgx {
+    float narrowing; // 1 / alpha^2 - 1
+    float peak;      // 1 / (pi alpha^2)
+    vec4 rates;
+    vec4 heights;
+};
 
-// The normals that reflect by D(n.h) of GGX: `1 / (1 + y)^2 = Int u e^(-u) e^(-u y) du` with
-// `y = (1 / alpha^2 - 1) (1 - (n.h)^2)`, a blend of Gaussians of all widths, by the trapezoidal rule in ln u. Each is taken
-// as the exponential that touches it where the narrower one before it lay.
-vec4 normals_reflecting_ggx(NormalsLobe lobe, float alpha, vec3 half_vector)
+// The four of an alpha, by polynomials in the logarithm of 1 / alpha^2, fitted: within 1 % where D is above 1/25 of its
+// peak from alpha 0.16 on, 2.4 % from 0.1 on, 5 % below. The same for all lobes.
+NormalsGgx normals_ggx_of(float alpha)
 {
-    float narrowing = max(1.0 / (alpha * alpha) - 1.0, 0.0);
-    int count = int(ceil(log(1.0 + narrowing) / NORMALS_GGX_STEP)) + 5;
-    vec4 sum = vec4(0.0);
-    float touch = 1.0;
-    for (int i = 0; i < count; ++i) {
-        float u = exp(1.5 - NORMALS_GGX_STEP * float(i));
-        float k = u * narrowing;
-        float sharpness = 2.0 * k * touch;
-        float factor;
-        float fall;
-        NormalsLobe product = normals_times(lobe, sharpness, half_vector, factor, fall);
-        touch = max(dot(product.axis, half_vector), NORMALS_LEAST_TOUCH);
-        float x = min(normals_versine(product.axis, half_vector), 1.0 - NORMALS_LEAST_TOUCH);
-        float integral = u * u * factor * exp(fall + x * (sharpness - k * (2.0 - x)) - u);
-        sum += integral * vec4(normals_mean_length(product.concentration) * product.axis, 1.0);
-    }
-    return NORMALS_GGX_STEP / (PI * alpha * alpha) * sum;
+    float squared = max(alpha * alpha, 1e-8);
+    float x = clamp(-log(squared), 0.0, 7.0);
+    const vec4 rates[5] = vec4[5](
+        vec4(2.020985, 1.528056, 0.6806096, -0.5635334),
+        vec4(-0.2763084, -0.4536521, -0.4066618, -0.4646996),
+        vec4(-0.01133465, 0.002002666, -0.04017584, 0.00009337949),
+        vec4(0.003780658, -0.0006070246, -0.0009029911, -0.01715815),
+        vec4(-0.00008220316, 0.0003919921, 0.0008161687, 0.002131140)
+    );
+    const vec4 heights[5] = vec4[5](
+        vec4(-4.356948, -1.928411, -0.6242086, -1.183123),
+        vec4(2.112390, 1.131416, -0.006254053, -0.6214685),
+        vec4(-0.4315223, -0.3399138, -0.1814546, -0.07101548),
+        vec4(0.04154411, 0.03048675, 0.006546810, -0.02289220),
+        vec4(-0.001593506, -0.0005994182, 0.001192064, 0.003567625)
+    );
+    NormalsGgx ggx;
+    ggx.narrowing = max(1.0 / squared - 1.0, 0.0);
+    ggx.peak = 1.0 / (PI * squared);
+    ggx.rates = exp(rates[0] + x * (rates[1] + x * (rates[2] + x * (rates[3] + x * rates[4]))));
+    ggx.heights = exp(heights[0] + x * (heights[1] + x * (heights[2] + x * (heights[3] + x * heights[4]))));
+    return ggx;
+}
+
+// The normals that reflect by D(n.h) of GGX. A Gaussian and a lobe are multiplied as Gaussians about their axes: a broad one
+// sees of the lobe its variance across, r / k, by squared sines; a narrow one its height and its own shape, by chords.
+vec4 normals_reflecting_ggx(NormalsLobe lobe, NormalsGgx ggx, vec3 half_vector)
+{
+    float apart = normals_versine(lobe.axis, half_vector);
+    float sine = apart * (2.0 - apart);
+    float k = lobe.concentration;
+    float missing = 1.0 - lobe.mean;
+    float variance = lobe.mean / k;
+    float opening = 2.0 / (1.0 + k + k * lobe.mean);
+    vec4 rates = ggx.rates * ggx.narrowing;
+    vec4 narrow = 1.0 - 1.0 / (1.0 + 2.0 * variance * rates);
+    vec4 kept = 1.0 / (1.0 + 2.0 * rates * (variance + (opening - variance) * narrow));
+    vec4 distance = sine + narrow * (2.0 * apart * k * opening - sine);
+    vec4 integrals = ggx.heights * kept * exp(-rates * distance * kept);
+    // The mean lies between the axes, by the share that the lobe keeps of its width; on the sphere, not on the chord.
+    vec4 lengths = integrals * (1.0 - missing * kept) * (1.0 + kept * (1.0 - kept) * apart);
+    float own = dot(lengths, kept);
+    float other = dot(lengths, 1.0 - kept);
+    return ggx.peak * vec4(own * lobe.axis + other * half_vector, dot(integrals, vec4(1.0)));
 }
 
 // The normals that reflect by D(n.h) of Beckmann, `exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4)`, by the exponential that
@@ -45,20 +75,21 @@ vec4 normals_reflecting_beckmann(NormalsLobe lobe, float alpha, vec3 half_vector
 {
     const float least = 0.2; // of the cosine where it touches: beyond 78 degrees nothing is left
     float k = 1.0 / (alpha * alpha);
-    float factor;
-    float fall;
+    float apart = normals_versine(lobe.axis, half_vector);
     float sharpness;
     float t = 1.0;
-    NormalsLobe product = lobe;
+    NormalsProduct product;
     for (int i = 0; i < 3; ++i) {
         sharpness = max(2.0 * k / (t * t * t) - 4.0 / t, 0.0);
-        product = normals_times(lobe, sharpness, half_vector, factor, fall);
-        t = max(dot(product.axis, half_vector), least);
+        product = normals_times(lobe, sharpness, apart);
+        t = max(1.0 - product.apart, least);
     }
-    float x = min(normals_versine(product.axis, half_vector), 1.0 - least);
+    float x = min(product.apart, 1.0 - least);
     float c = 1.0 - x;
-    float integral = factor * exp(fall + sharpness * x - k * x * (2.0 - x) / (c * c)) * k / (PI * c * c * c * c);
-    return integral * vec4(normals_mean_length(product.concentration) * product.axis, 1.0);
+    float height = product.exponent + sharpness * x - k * x * (2.0 - x) / (c * c);
+    float integral = product.factor * exp(height) * k / (PI * c * c * c * c);
+    vec3 mean = product.mean * (product.own * lobe.axis + product.other * half_vector);
+    return integral * vec4(mean, 1.0);
 }
 
 // The mean of D(n.h) / 4 (n.l)+ by the normals that reflect.
@@ -68,9 +99,9 @@ float normals_unmasked(vec4 reflecting, vec3 light)
 }
 
 // The mean of D(n.h) / 4 (n.l)+, D of GGX.
-float normals_ggx(vec4 stored, float alpha, vec3 light, vec3 half_vector)
+float normals_ggx(vec4 stored, NormalsGgx ggx, vec3 light, vec3 half_vector)
 {
-    return stored.w * normals_unmasked(normals_reflecting_ggx(normals_lobe(stored), alpha, half_vector), light);
+    return stored.w * normals_unmasked(normals_reflecting_ggx(normals_lobe(stored), ggx, half_vector), light);
 }
 
 // The mean of D(n.h) / 4 (n.l)+, D of Beckmann.
@@ -89,10 +120,10 @@ float normals_masking(float alpha, float nl, float nv)
 }
 
 // The mean of D(n.h) G / (4 (n.l)+ (n.v)) (n.l)+, the model of Torrance and Sparrow with GGX, but for Fresnel's factor: that
-// depends on light and half vector alone, and is the caller's to multiply.
-float normals_torrance_sparrow(vec4 stored, float alpha, vec3 light, vec3 view, vec3 half_vector)
+// depends on light and half vector alone, and is the caller's to multiply. `ggx` is of `alpha`.
+float normals_torrance_sparrow(vec4 stored, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
 {
-    vec4 reflecting = normals_reflecting_ggx(normals_lobe(stored), alpha, half_vector);
+    vec4 reflecting = normals_reflecting_ggx(normals_lobe(stored), ggx, half_vector);
     vec3 mean = reflecting.xyz / max(reflecting.w, 1e-30);
     float nl = normals_clamped_cosine(normals_lobe(reflecting), light);
     return stored.w * reflecting.w * nl * normals_masking(alpha, nl, max(dot(mean, view), 1e-4));

@@ -7,6 +7,7 @@
 #include "normals/rivals.glsl"
 
 #ifdef RIVAL_SH
+#include "normals/harmonics.glsl"
 #include "common/sh_basis.glsl"
 #endif
 
@@ -58,7 +59,12 @@ void main()
     if (material.kind == NORMALS_LAMBERT || dot(half_vector, half_vector) > 0.0) {
         vec4 kept = rows.values[at].kept[0];
 #if defined(RIVAL_SH)
+#if ORDER < 5
+#define COEFFICIENT(i) rows.values[at].kept[(i) / 4][(i) % 4]
+        found = PI * NORMALS_HARMONIC_LAMBERT(light, COEFFICIENT);
+#else
         found = max(convolved(at, 0, light), 0.0);
+#endif
         found *= material.kind == NORMALS_LAMBERT ? 1.0 / PI : max(convolved(at, 2, half_vector), 0.0);
 #elif defined(RIVAL_MIP)
         found = normals_single(normals_direction(kept.xyz), material, light, half_vector);

@@ -42,7 +42,7 @@ void main()
         } else if (light.w == 1.0) {
             sum += normals_blinn_phong(lobe, half_vector.w, light.xyz, half_vector.xyz);
         } else {
-            sum += normals_ggx(lobe, half_vector.w, light.xyz, half_vector.xyz);
+            sum += normals_ggx(lobe, normals_ggx_of(half_vector.w), light.xyz, half_vector.xyz);
         }
     }
     radiance.values[at] = sum;

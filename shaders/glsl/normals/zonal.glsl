@@ -30,7 +30,7 @@ vec4 normals_reflecting_zonal(NormalsLobe lobe, vec3 half_vector)
     }
     float value = max(sums.x, 0.0);
     vec3 across = half_vector - t * lobe.axis;
-    vec3 moment = (value * normals_mean_length(k) + sums.z) * lobe.axis + sums.y / k * across;
+    vec3 moment = (value * lobe.mean + sums.z) * lobe.axis + sums.y / k * across;
     float size = length(moment);
     return vec4(size > value ? moment * (value / size) : moment, value);
 }

@@ -171,7 +171,9 @@ fn check_packed(storage: Storage, level: &LevelLobes, bytes: &[u8]) {
         if found.weight > 0.1 && expected.weight > 0.1 {
             let kept = |lobe: WeightedLobe| 1.0 - lobe.mean().length();
             let (ours, theirs) = ((kept(found) - kept(exact)).abs(), (kept(expected) - kept(exact)).abs());
-            assert!(ours <= 1.5 * theirs + 1e-6, "{storage:?}: {ours:e} and {theirs:e} of {exact:?}");
+            // A weight between two codes may fall to either.
+            let slack = if storage == Storage::F16 { 1e-6 } else { 1e-3 };
+            assert!(ours <= 1.5 * theirs + slack, "{storage:?}: {ours:e} and {theirs:e} of {exact:?}");
         }
     }
 }
