@@ -8,7 +8,7 @@ use airglow_gpu::{
     AdoptInfo, Context, Execution, Feature, FeatureSet, GpuError, Imports, Label, Location, Record,
     Requirements, Timing,
 };
-use airglow_graph::{Access, BufferDesc, Graph, PassKind};
+use airglow_graph::{Access, BufferDesc, Graph, PassKind, State};
 use airglow_tests::colours::{self, BYTES, STORAGE, storage};
 use airglow_tests::compare::assert_same_bits;
 use airglow_tests::device::{fixture, open};
@@ -164,6 +164,38 @@ fn memory_is_charged_to_owners_and_freed_frames_later() {
         message.contains("all of it needs 1125899906842624 bytes but maxMemoryAllocationSize"),
         "{message}"
     );
+}
+
+/// A buffer that another API or process owns between frames: acquired, changed, given back, under validation.
+#[test]
+fn what_another_owner_has_is_acquired_and_given_back() {
+    let fixture = fixture();
+    let context = fixture.context();
+    let (pipeline, buffer) = (colours::pipeline(context), storage(context, "test", BYTES));
+    let foreign = State::of(Access::ComputeStorageReadWrite).on_queue_family(vk::QUEUE_FAMILY_EXTERNAL);
+    let mut graph: Graph<Record> = Graph::new();
+    let imported = graph.import_buffer("colours", *buffer.desc(), foreign, foreign);
+    let mut pass = graph.pass("colours", PassKind::Compute);
+    let changed = pass.update(imported, Access::ComputeStorageReadWrite);
+    pass.record(Box::new(move |recorder, resources| {
+        colours::record(recorder, &pipeline, resources.buffer(&changed)?, 1.0)
+    }));
+    let plan = airglow_tests::plan::compile(graph, &context.graph_limits());
+    let (acquire, release) = (&plan.acquires().buffers[0], &plan.releases().buffers[0]);
+    assert_eq!((acquire.src_queue_family, acquire.dst_queue_family), (vk::QUEUE_FAMILY_EXTERNAL, 0));
+    assert_eq!((release.src_queue_family, release.dst_queue_family), (0, vk::QUEUE_FAMILY_EXTERNAL));
+    let mut execution = Execution::prepare(context, plan).unwrap();
+    let mut imports = Imports::new();
+    imports.buffer(&imported, &buffer);
+    for _ in 0..2 {
+        let record = |recorder: &mut airglow_gpu::Recorder<'_>| {
+            // SAFETY: a recording command buffer of this frame; nobody else has the buffer, whoever owns it.
+            unsafe { execution.record(context, recorder.command_buffer(), &imports, None) }
+        };
+        fixture.device().run(context, record).unwrap();
+    }
+    let copy = fixture.device().run(context, |recorder| recorder.read_back_buffer(&buffer)).unwrap();
+    assert_eq!(copy.read::<f32>().unwrap()[4 * 128..][..2], [0.5, 0.5]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use airglow_graph::{Access, BufferDesc, ImageDesc, LeftOut};
 
 use crate::NormalsError;
 use crate::cache::PackedChain;
-use crate::chain::{self, Level};
+use crate::chain::{self, Level, VECTOR};
 use crate::kernels::{AlignConstants, FitConstants, PackConstants};
 use crate::map::NormalMap;
 use crate::normals::Normals;
@@ -16,8 +16,6 @@ use crate::stage::{Resource, Stage, Work};
 const OWNER: &str = "normals";
 /// Texels that one step fits at most: a fraction of a second on any device, so that no watchdog barks.
 const BAND: usize = 1 << 16;
-/// Bytes of a normal or lobe in f32.
-const VECTOR: u64 = 16;
 
 /// The lobes of a map's levels as a shader samples them with filters.
 ///
@@ -51,6 +49,8 @@ pub struct Build {
     pub(crate) normals: Option<Buffer>,
     pub(crate) lobes: Vec<Buffer>,
     pub(crate) packed: Vec<Buffer>,
+    /// Where lobes are counted.
+    pub(crate) counters: Option<Buffer>,
     texture: Option<LobeTexture>,
     left_out: Vec<LeftOut>,
 }
@@ -60,9 +60,11 @@ impl Normals {
     /// records nothing.
     ///
     /// # Errors
-    /// [`NormalsError::Budget`] with the next setting that fits, [`NormalsError::Gpu`] for what the device refuses.
+    /// [`NormalsError::Budget`] with the next setting that fits, whether the chain's budget or the host's memory budget is
+    /// the one without room, [`NormalsError::Gpu`] for what the device refuses.
     pub fn build(&self, context: &Context, map: &NormalMap) -> Result<Build, NormalsError> {
         let levels = chain::levels(map, &self.settings)?;
+        chain::check_build(map, &self.settings, context.memory_left())?;
         let mut build = Build::empty(map);
         let Some(texture) = self.texture(context, &levels)? else { return Ok(build) };
         let vectors: Vec<[f32; 4]> =
@@ -235,6 +237,7 @@ impl Build {
             normals: None,
             lobes: Vec::new(),
             packed: Vec::new(),
+            counters: None,
             texture: None,
             left_out: vec![left_out],
         }
@@ -291,8 +294,14 @@ impl Build {
             Resource::Normals => self.normals.as_ref(),
             Resource::Lobes(level) => self.lobes.get(level.checked_sub(1)?),
             Resource::Packed(level) => self.packed.get(level.checked_sub(1)?),
+            Resource::Health => self.counters.as_ref(),
             Resource::Texture => None,
         }
+    }
+
+    /// Lobes of a texel.
+    pub(crate) fn lobe_count(&self) -> u64 {
+        self.texture.as_ref().map_or(0, |texture| texture.settings.fit.lobes as u64)
     }
 }
 

@@ -12,6 +12,8 @@ const MOST_SAMPLES: usize = 400;
 pub const MOST_ITERATIONS: usize = 32;
 /// Numbers of lobes that there are kernels for, most first.
 const LOBES: [usize; 4] = [6, 4, 2, 1];
+/// Bytes of a normal or lobe in f32.
+pub(crate) const VECTOR: u64 = 16;
 
 /// A level of mixtures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,15 +46,37 @@ pub fn levels(map: &NormalMap, settings: &Settings) -> Result<Vec<Level>, Normal
     let bytes: u64 = levels.iter().map(|level| level.bytes).sum();
     let budget = settings.budget(map.normals().len());
     if bytes > budget {
-        let mend = fitting((1..map.levels()).map(texels).sum(), budget);
+        let texels: u64 = (1..map.levels()).map(texels).sum();
+        let mend = fitting(budget, |lobes, storage| texels * lobes as u64 * storage.lobe_bytes());
         return Err(NormalsError::Budget { bytes, budget, mend });
     }
     Ok(levels)
 }
 
-/// The most that a budget holds of so many texels, in words.
-fn fitting(texels: u64, budget: u64) -> String {
-    let bytes = |lobes: usize, storage: Storage| texels * lobes as u64 * storage.lobe_bytes();
+/// Bytes that a build takes while it runs: the map's normals and the lobes in f32, the lobes packed, the texture.
+fn build_bytes(map: &NormalMap, texels: u64, lobes: usize, storage: Storage) -> u64 {
+    VECTOR * map.normals().len() as u64 + texels * lobes as u64 * (VECTOR + 2 * storage.lobe_bytes())
+}
+
+/// Refuses a build that `left` bytes of the host's budget have no room for.
+///
+/// # Errors
+/// [`NormalsError::Budget`], with the most that does fit.
+pub(crate) fn check_build(
+    map: &NormalMap,
+    settings: &Settings,
+    left: Option<u64>,
+) -> Result<(), NormalsError> {
+    let texels = |level| map.size(level).iter().map(|&size| size as u64).product::<u64>();
+    let texels: u64 = (1..map.levels()).map(texels).sum();
+    let bytes = build_bytes(map, texels, settings.fit.lobes, settings.storage);
+    let Some(budget) = left.filter(|left| bytes > *left) else { return Ok(()) };
+    let mend = fitting(budget, |lobes, storage| build_bytes(map, texels, lobes, storage));
+    Err(NormalsError::Budget { bytes, budget, mend })
+}
+
+/// The most that a budget holds, in words, where lobes so kept take `bytes`.
+fn fitting(budget: u64, bytes: impl Fn(usize, Storage) -> u64) -> String {
     let choices = LOBES.into_iter().flat_map(|lobes| Storage::ALL.map(|storage| (lobes, storage)));
     let fitting = choices.filter(|&(lobes, storage)| bytes(lobes, storage) <= budget);
     // Of two that take the same the later: fewer lobes, finer numbers.
@@ -106,6 +130,13 @@ mod tests {
         let square = NormalMap::from_vectors(128, 128, &[[0.0, 0.0, 1.0]; 128 * 128]).unwrap();
         let sources: Vec<_> = levels(&square, &wide).unwrap().iter().map(|level| level.source).collect();
         assert_eq!(sources, [0, 0, 0, 0, 2, 3, 4]);
+        let taken = build_bytes(&square, 5461, 4, Storage::F16);
+        assert_eq!(taken, 16 * 128 * 128 + 5461 * 4 * 32);
+        assert!(
+            check_build(&square, &wide, Some(taken)).is_ok() && check_build(&square, &wide, None).is_ok()
+        );
+        let error = check_build(&square, &wide, Some(taken - 1)).unwrap_err().to_string();
+        assert!(error.contains("lobes to 4 and the storage to Snorm8"), "{error}");
         let single = NormalMap::from_vectors(1, 1, &[[0.0, 0.0, 1.0]]).unwrap();
         assert_eq!(levels(&single, &wide).unwrap(), []);
     }

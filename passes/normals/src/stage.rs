@@ -1,7 +1,9 @@
 //! Steps of a build: what each uses, for whoever makes the barriers, and how it is recorded.
 
 use airglow_gpu::ash::vk::ImageViewType;
-use airglow_gpu::{Binding, Buffer, ComputePipeline, GpuError, Image, Recorder, ViewDesc};
+use airglow_gpu::{
+    Binding, Buffer, BufferSlice, ComputePipeline, GpuError, Image, Look, Recorder, Tally, ViewDesc,
+};
 use airglow_graph::Access;
 
 use crate::kernels::{AlignConstants, FitConstants, PackConstants};
@@ -20,6 +22,8 @@ pub enum Resource {
     Packed(usize),
     /// The texture.
     Texture,
+    /// The counters of a host that has lobes counted.
+    Health,
 }
 
 /// A step of a build. All it works on is the build's own.
@@ -39,6 +43,8 @@ pub(crate) enum Work {
     Align { pipeline: ComputePipeline, coarse: Buffer, lobes: Buffer, constants: AlignConstants },
     /// A level in few bits.
     Pack { pipeline: ComputePipeline, lobes: Buffer, packed: Buffer, constants: PackConstants },
+    /// Lobes of all levels counted.
+    Count { tally: Tally, looks: Vec<Look<BufferSlice>> },
     /// All levels into the texture.
     Copy { packed: Vec<Buffer>, texture: Image },
 }
@@ -79,6 +85,7 @@ impl Stage {
                 let count = constants.texels as usize * constants.lobes as usize;
                 dispatch(recorder, pipeline, [lobes, packed], constants, count)
             }
+            Work::Count { tally, looks } => tally.record(recorder, looks),
             Work::Copy { packed, texture } => {
                 let layers = texture.desc().layers;
                 (0..).zip(packed).try_for_each(|(base_mip, packed)| {

@@ -1,6 +1,6 @@
 //! The host: its memory and its submission, on a device that is given.
 
-use super::roads::{by_graph, by_record, fill, read_back};
+use super::roads::{Prepare, by_graph, by_record, fill, read_back};
 use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, check_layouts};
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
@@ -140,7 +140,7 @@ impl<'a> Host<'a> {
     ) -> Result<(Outputs, Vec<Call>), Refusal> {
         let shim = self.watch();
         let adopt = || self.adopt(&shim, requirements, options, 1);
-        let done = self.frame_of(&shim, adopt, make, road, true)?;
+        let done = self.frame_of(&shim, adopt, make, (road, Execution::prepare), true)?;
         match shim.alive() {
             alive if alive.is_empty() => Ok(done),
             alive => Err(format!("{road:?} left alive: {alive:?}").into()),
@@ -153,7 +153,7 @@ impl<'a> Host<'a> {
         shim: &Shim,
         adopt: impl Fn() -> Result<Context, Refusal>,
         make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
-        road: Road,
+        (road, prepare): (Road, Prepare),
         submit: bool,
     ) -> Result<(Outputs, Vec<Call>), Refusal> {
         let mut held = Vec::new();
@@ -170,7 +170,7 @@ impl<'a> Host<'a> {
             match road {
                 Road::Graph => {
                     let rooms = [(&mut room, &*resources, &*given)];
-                    execution = Some(by_graph(rooms, recorder, &Default::default(), Execution::prepare)?);
+                    execution = Some(by_graph(rooms, recorder, &Default::default(), prepare)?);
                     calls = shim.take_calls();
                     check_layouts(&calls, &resources, &given)?;
                 }

@@ -51,12 +51,15 @@ fn hand_over(recorder: &mut Recorder<'_>, given: &Given, from: State, to: State)
     Ok(())
 }
 
+/// How a plan's transients are made.
+pub(super) type Prepare = fn(&Context, Plan<Record>) -> Result<Execution, GpuError>;
+
 /// One plan of all rooms, each with its resources of the host's; `prepare` makes its transients.
 pub(super) fn by_graph<'r, R: Room + 'r>(
     rooms: impl IntoIterator<Item = (&'r mut R, &'r [HostResource], &'r [Given])>,
     recorder: &mut Recorder<'_>,
     options: &Options,
-    prepare: fn(&Context, Plan<Record>) -> Result<Execution, GpuError>,
+    prepare: Prepare,
 ) -> Result<Execution, Refusal> {
     let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
     let context = recorder.context();

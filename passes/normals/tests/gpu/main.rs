@@ -4,7 +4,9 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod conformance;
 mod functions;
+mod health;
 mod limits;
 mod textures;
 
