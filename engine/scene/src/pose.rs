@@ -143,10 +143,12 @@ impl Mesh {
     }
 }
 
-/// What normals are turned by: the transposed inverse times the determinant, which is there for flat matrices too.
+/// What normals are turned by: the transposed inverse times the size of the determinant, which is there for flat matrices
+/// too.
 fn cofactor(matrix: Mat3) -> Mat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
+    let side = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
+    Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * side
 }
 
 #[cfg(test)]
@@ -226,6 +228,8 @@ mod tests {
         assert!((Vec3::from(normals[1]) - turned).length() < 1e-6, "{normals:?}");
         assert_eq!((positions[2], normals[2]), ([0.0; 3], [0.0; 3]), "no weights: finite all the same");
         (mesh.joints, mesh.weights) = (Vec::new(), Vec::new());
+        let mirrored = Mat4::from_scale(Vec3::new(1.0, -1.0, 2.0));
+        assert_eq!(mesh.posed(&[mirrored]).1[0], [1.0, 0.0, 0.0], "outwards stays outwards");
         let flat = Mat4::from_scale(Vec3::new(2.0, 0.0, 1.0));
         let (positions, normals) = mesh.posed(&[flat]);
         assert_eq!((positions[0], normals[0]), ([2.0, 0.0, 0.0], [0.0; 3]), "{normals:?}");

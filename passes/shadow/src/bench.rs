@@ -165,8 +165,11 @@ impl Bench<'_> {
         self.frame(&self.shadow(settings, kernel)?, scene, repeats)
     }
 
-    /// The pass with a kernel.
-    pub(crate) fn shadow(&self, settings: Settings, kernel: SphereKernel) -> Result<Shadow, ShadowError> {
+    /// The pass with a kernel, for [`Self::frame`].
+    ///
+    /// # Errors
+    /// As [`Shadow::new`].
+    pub fn shadow(&self, settings: Settings, kernel: SphereKernel) -> Result<Shadow, ShadowError> {
         match kernel {
             SphereKernel::Pass => Shadow::new(self.context, settings),
             SphereKernel::Products => Shadow::with_kind(self.context, settings, Kind::Products),
@@ -174,8 +177,11 @@ impl Bench<'_> {
         }
     }
 
-    /// Runs a pass over a scene.
-    pub(crate) fn frame(
+    /// Runs a pass over a scene, `repeats` times.
+    ///
+    /// # Errors
+    /// As [`Shadow::receivers`] and [`Blockers::set`].
+    pub fn frame(
         &self,
         shadow: &Shadow,
         scene: &Scene<'_>,

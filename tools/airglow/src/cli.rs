@@ -2,6 +2,8 @@
 
 use clap::{Args, Parser, Subcommand};
 
+#[cfg(all(feature = "relight", feature = "shadow"))]
+use crate::commands::{film, spheres};
 #[cfg(all(feature = "normals", feature = "relight"))]
 use crate::commands::maps;
 use crate::commands::{bake, compare, devices, requirements};
@@ -64,6 +66,10 @@ pub enum Command {
     Render(render::Arguments),
     #[cfg(feature = "relight")]
     Show(show::Arguments),
+    #[cfg(all(feature = "relight", feature = "shadow"))]
+    Film(film::Arguments),
+    #[cfg(all(feature = "relight", feature = "shadow"))]
+    Spheres(spheres::Arguments),
     #[cfg(all(feature = "normals", feature = "relight"))]
     Maps(maps::Arguments),
     Compare(compare::Arguments),

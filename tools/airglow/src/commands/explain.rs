@@ -25,7 +25,8 @@ use crate::report::relight::workload::{Effort, Workload};
 #[command(after_help = "Example:
   airglow explain relight assets/scenes/spot.toml
   airglow explain fog assets/scenes/street.toml
-  airglow explain radiance assets/scenes/blocks.toml")]
+  airglow explain radiance assets/scenes/blocks.toml
+  airglow explain shadow assets/scenes/walkers.toml")]
 pub struct Arguments {
     /// The pass.
     #[arg(value_enum)]
@@ -81,6 +82,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     #[cfg(feature = "radiance")]
     if arguments.pass == Pass::Radiance {
         return radiance(&scene, &arguments.scene.cache, global, output);
+    }
+    #[cfg(feature = "shadow")]
+    if arguments.pass == Pass::Shadow {
+        return shadow(&scene, global, output);
     }
     if scene.environment.is_none() {
         let left_out = lighting::no_environment(lighting::relight_bytes(&scene), None);
@@ -146,6 +151,31 @@ fn radiance(scene: &Scene, cache: &std::path::Path, global: &Global, output: &Ou
         Ok(Explanation { machine, workload, knobs: knobs.collect() })
     })?;
     output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
+}
+
+/// The knobs of shadows, none of which a scene file names but the order.
+#[cfg(feature = "shadow")]
+fn shadow(scene: &Scene, global: &Global, output: &Output) -> Outcome {
+    use crate::report::shadow::{Effort, Measurement};
+    if let Some(left_out) = crate::host::shadow::left_out(scene) {
+        return output.result(&left_out, left_out_text);
+    }
+    let explanation = device::with(global, &airglow::shadow::Shadow::requirements(), |device| {
+        let (workload, curves) = Measurement { device, effort: Effort::new(true), output }.explain(scene)?;
+        let knobs = curves.into_iter().map(|curve| match curve.knob.as_str() {
+            "order" => {
+                let is_default = scene.quality.order == Quality::default().order;
+                let source = if is_default { "the default" } else { "the scene file or the command line" };
+                knob(curve, format!("order {}", scene.quality.order), source.to_owned())
+            }
+            _ => {
+                let setting = curve.chosen.as_ref().map_or(String::new(), |chosen| chosen.setting.clone());
+                knob(curve, setting, "the pass's default".to_owned())
+            }
+        });
+        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+    })?;
+    output.result(&explanation, |explanation| text(explanation, None))
 }
 
 fn left_out_text(left_out: &LeftOut) -> String {

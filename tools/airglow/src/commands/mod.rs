@@ -7,6 +7,10 @@ pub mod devices;
 pub mod eval;
 #[cfg(feature = "relight")]
 pub mod explain;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod film;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod spheres;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod maps;
 #[cfg(feature = "relight")]
@@ -39,6 +43,10 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Render(arguments) => render::run(&arguments, global, output),
         #[cfg(feature = "relight")]
         Command::Show(arguments) => show::run(&arguments, global, output),
+        #[cfg(all(feature = "relight", feature = "shadow"))]
+        Command::Film(arguments) => film::run(&arguments, global, output),
+        #[cfg(all(feature = "relight", feature = "shadow"))]
+        Command::Spheres(arguments) => spheres::run(&arguments, output),
         #[cfg(all(feature = "normals", feature = "relight"))]
         Command::Maps(arguments) => maps::run(&arguments, global, output),
         Command::Compare(arguments) => compare::run(&arguments, output),

@@ -12,6 +12,8 @@ use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
+#[cfg(feature = "shadow")]
+use crate::host::shadow;
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
 
@@ -68,6 +70,11 @@ pub enum Form {
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
+    #[cfg(feature = "shadow")]
+    let scene = match arguments.without {
+        Some(PassName::Shadow) => shadow::without(scene),
+        _ => scene,
+    };
     let (without, cache) = (arguments.without == Some(PassName::Relight), &arguments.scene.cache);
     let settings = frame(arguments);
     if !arguments.what_if.is_empty() {
@@ -115,6 +122,10 @@ fn frame(arguments: &Arguments) -> Settings {
         exposure: 1.0,
         turn: DQuat::IDENTITY,
         spin: 0.0,
+        without_shadow: arguments.without == Some(PassName::Shadow),
+        count_shadow: false,
+        time: arguments.scene.time,
+        step: 0.0,
         without_relight: arguments.without == Some(PassName::Relight),
         air: Air::with_fog(arguments.without != Some(PassName::Fog)),
         window: None,

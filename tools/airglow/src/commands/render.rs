@@ -15,6 +15,8 @@ use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
+#[cfg(feature = "shadow")]
+use crate::host::shadow;
 #[cfg(feature = "radiance")]
 use crate::host::strip;
 #[cfg(feature = "fog")]
@@ -72,6 +74,9 @@ pub struct Arguments {
         conflicts_with = "reference"
     )]
     spin: f64,
+    /// Seconds from one frame to the next: figures walk on, from one plan. The picture is the last frame.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, conflicts_with = "reference")]
+    step: f64,
     /// Factor from scene-linear values to the display, instead of the scene file's.
     #[arg(long, value_name = "FACTOR")]
     exposure: Option<f32>,
@@ -131,6 +136,8 @@ pub enum PassName {
     Relight,
     /// Scattering in the scene's medium; without it the air is clear.
     Fog,
+    /// Soft shadows of what moves; without it figures cast none.
+    Shadow,
 }
 
 /// Where the complete model is evaluated.
@@ -149,6 +156,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         check_extension(path)?;
     }
     let scene = arguments.scene.load(output)?;
+    #[cfg(feature = "shadow")]
+    let scene = match arguments.without == Some(PassName::Shadow) && !arguments.split {
+        true => shadow::without(scene),
+        false => scene,
+    };
     let mut source = match arguments.reference {
         true => Source::Colours(reference(&scene, arguments, output)?),
         false => Source::of_scene(&scene, arguments.leaves_out_relight(), &arguments.scene.cache, output)?,
@@ -189,6 +201,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         {
             stat.near = renderer.near_stat(&settings)?;
         }
+        #[cfg(feature = "shadow")]
+        {
+            stat.shadow = renderer.shadow_stat(&settings)?;
+        }
         for health in renderer.health() {
             stat.health.extend(health::collect(device, health)?);
         }
@@ -214,6 +230,10 @@ fn settings(arguments: &Arguments) -> Settings {
         exposure: 1.0,
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
+        without_shadow: arguments.without == Some(PassName::Shadow) && !arguments.split,
+        count_shadow: false,
+        time: arguments.scene.time,
+        step: arguments.step,
         without_relight: arguments.leaves_out_relight(),
         air: Air::with_fog(arguments.without != Some(PassName::Fog) || arguments.split),
         window: None,
@@ -255,6 +275,7 @@ impl Arguments {
     fn split(&self, settings: Settings) -> Settings {
         match self.without {
             Some(PassName::Fog) => Settings { air: Air::Clear, ..settings },
+            Some(PassName::Shadow) => Settings { without_shadow: true, ..settings },
             _ => Settings { without_relight: true, ..settings },
         }
     }

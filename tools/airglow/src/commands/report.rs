@@ -31,6 +31,7 @@ use crate::report::write;
   airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
   airglow report fog -o out/fog
   airglow report radiance -o out/radiance
+  airglow report shadow -o out/shadow
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
 pub struct Arguments {
@@ -38,7 +39,8 @@ pub struct Arguments {
     #[arg(value_enum, default_value_t = Pass::Relight)]
     pass: Pass,
     /// The scene to light: a scene file or a glTF file. For relight assets/scenes/spot.toml unless given, for fog
-    /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml.
+    /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml, for shadow
+    /// assets/scenes/walkers.toml.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
@@ -66,6 +68,9 @@ pub enum Pass {
     /// Incident radiance of near emitters.
     #[cfg(feature = "radiance")]
     Radiance,
+    /// Soft shadows of what moves.
+    #[cfg(feature = "shadow")]
+    Shadow,
 }
 
 impl Pass {
@@ -77,6 +82,8 @@ impl Pass {
             Self::Fog => "assets/scenes/street.toml",
             #[cfg(feature = "radiance")]
             Self::Radiance => "assets/scenes/blocks.toml",
+            #[cfg(feature = "shadow")]
+            Self::Shadow => "assets/scenes/walkers.toml",
         }
     }
 
@@ -87,6 +94,8 @@ impl Pass {
             Self::Fog => "fog",
             #[cfg(feature = "radiance")]
             Self::Radiance => "radiance",
+            #[cfg(feature = "shadow")]
+            Self::Shadow => "shadow",
         }
     }
 }
@@ -106,6 +115,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Pass::Fog => fog(arguments, global, output)?,
             #[cfg(feature = "radiance")]
             Pass::Radiance => radiance(arguments, global, output)?,
+            #[cfg(feature = "shadow")]
+            Pass::Shadow => shadow(arguments, global, output)?,
         }]
     } else {
         let read = arguments.merge.iter().map(|path| write::read(path)).collect::<Outcome<Vec<_>>>()?;
@@ -114,6 +125,27 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let paths = write::write(&arguments.output, &reports)?;
     output.result(&paths, |paths| {
         paths.iter().map(|path| format!("wrote {}", path.display())).collect::<Vec<_>>().join("\n")
+    })
+}
+
+/// The report on shadows of what moves.
+#[cfg(feature = "shadow")]
+fn shadow(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    use crate::report::shadow::{Effort, Measurement};
+    let scene = SceneOptions::plain(&arguments.scene(), arguments.environment.as_deref()).load(output)?;
+    device::with(global, &airglow::shadow::Shadow::requirements(), |device| {
+        let effort = Effort::new(arguments.quick);
+        let measured = Measurement { device, effort, output }.all(&scene)?;
+        Ok(Report {
+            pass: "shadow".to_owned(),
+            machine: device.machine(),
+            command: command(arguments, &device.machine()),
+            date: today(),
+            workload: measured.workload,
+            remarks: measured.remarks,
+            curves: measured.curves,
+            numbers: measured.numbers,
+        })
     })
 }
 

@@ -36,7 +36,10 @@ pub struct SceneOptions {
     /// What casts shadows on what, instead of the scene file's.
     #[arg(long, value_enum)]
     pub shadow: Option<ShadowName>,
-    /// Folder of baked transfer.
+    /// Seconds after the scene's time 0: figures stand where they are then.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    pub time: f64,
+    /// Folder of baked transfer and of fitted spheres.
     #[arg(long, value_name = "FOLDER", default_value = CACHE)]
     pub cache: PathBuf,
 }
@@ -71,6 +74,7 @@ impl SceneOptions {
             rays: None,
             storage: None,
             shadow: None,
+            time: 0.0,
             cache: PathBuf::from(CACHE),
         }
     }
@@ -89,6 +93,7 @@ impl SceneOptions {
                 self.scene.display()
             )));
         }
+        scene.set_time(self.time as f32);
         if let Some(path) = &self.environment {
             let environment = airglow_scene::image_io::read_environment(path).map_err(Failure::input)?;
             let distance = scene.environment.and_then(|stated| stated.distance);

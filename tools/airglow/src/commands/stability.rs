@@ -7,6 +7,8 @@ mod fog;
 mod normals;
 #[cfg(feature = "radiance")]
 mod radiance;
+#[cfg(feature = "shadow")]
+mod shadow;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -36,6 +38,7 @@ use again::Again;
   airglow stability fog
   airglow stability radiance
   airglow stability normals
+  airglow stability shadow
   airglow stability relight --case 'rotation: zero, order 6'
   airglow stability relight -o out/stability     the table and the sweeps' plots as a page")]
 pub struct Arguments {
@@ -67,6 +70,9 @@ enum Tried {
     /// Incident radiance of near emitters.
     #[cfg(feature = "radiance")]
     Radiance,
+    /// Soft shadows of moving spheres.
+    #[cfg(feature = "shadow")]
+    Shadow,
 }
 
 impl Tried {
@@ -79,6 +85,8 @@ impl Tried {
             Self::Radiance => "radiance",
             #[cfg(feature = "normals")]
             Self::Normals => "normals",
+            #[cfg(feature = "shadow")]
+            Self::Shadow => "shadow",
         }
     }
 }
@@ -144,6 +152,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         Tried::Radiance => radiance::attempt(arguments, global, output)?,
         #[cfg(feature = "normals")]
         Tried::Normals => normals::attempt(arguments, global, output)?,
+        #[cfg(feature = "shadow")]
+        Tried::Shadow => shadow::attempt(arguments, global, output)?,
     };
     if table.rows.is_empty() && table.sweeps.is_empty() {
         let name = arguments.case.as_deref().unwrap_or_default();

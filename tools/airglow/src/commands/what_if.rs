@@ -13,16 +13,19 @@ use crate::host::device::{self, Device};
 use crate::host::emitters;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Renderer, Settings};
+#[cfg(feature = "shadow")]
+use crate::host::shadow;
 use crate::output::Output;
 
 /// Every key and what it takes.
-const KEYS: [(&str, &str); 11] = [
+const KEYS: [(&str, &str); 12] = [
     ("order", "1 to 6"),
     ("storage", "f32 or f16"),
     ("shadow", "scene, object or unshadowed"),
     ("environment", "none or a file (.exr, .hdr)"),
     ("medium", "none"),
     ("emitters", "none"),
+    ("moving_shadow", "off"),
     ("relight", "on or off"),
     ("fog", "on or off"),
     ("views", "1 to 8"),
@@ -89,6 +92,8 @@ fn apply(change: &str, scene: &mut Scene, settings: &mut Settings) -> Outcome {
         ("medium", _) => (value == "none").then(|| scene.medium = None),
         #[cfg(feature = "radiance")]
         ("emitters", _) => (value == "none").then(|| emitters::remove(scene)),
+        #[cfg(feature = "shadow")]
+        ("moving_shadow", "off") => Some(*scene = shadow::without(scene.clone())),
         ("relight", _) => switch(value).map(|on| settings.without_relight = !on),
         ("fog", _) => switch(value).map(|on| settings.air = Air::with_fog(on)),
         ("views", _) => whole(value, 8).map(|views| settings.views = views),

@@ -17,6 +17,7 @@ use super::complete::Complete;
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
+use super::skin::Posed;
 use super::sky::{Behind, SkyPipelines};
 use super::view::SharedView;
 
@@ -154,7 +155,7 @@ impl Pipelines {
     }
 
     /// Draws the scene: lit by `colours` where a pass made them, else by the view's ambient light, and by the scene's
-    /// `lights`. Returns the HDR target with the environment behind the surfaces, and the depth.
+    /// `lights`; what is `posed` in the frame is drawn so. Returns the HDR target with the environment behind the surfaces, and the depth.
     pub fn scene(
         &self,
         graph: &mut Graph<Record>,
@@ -163,9 +164,11 @@ impl Pipelines {
         colours: Option<&VertexColours>,
         lights: Option<&Lights>,
         behind: Option<&Behind>,
+        posed: &[Posed],
         size: [u32; 2],
     ) -> Drawn {
         let mut pass = graph.pass("scene draw", PassKind::Graphics);
+        posed.iter().for_each(|posed| posed.read(&mut pass));
         if let Some(colours) = colours {
             pass.read(&colours.buffer, Access::VertexBuffer);
         }

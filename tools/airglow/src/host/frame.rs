@@ -13,6 +13,8 @@ use super::lighting::{Lighting, Reason, left_out, no_environment};
 #[cfg(feature = "radiance")]
 use super::near::Arrival;
 use super::renderer::{Renderer, Settings};
+#[cfg(feature = "shadow")]
+use super::skin::Posed;
 use super::sky::{Behind, Glow};
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
@@ -34,6 +36,9 @@ pub struct Turning {
     /// The lights of the radiance pass, where there is one.
     #[cfg(feature = "radiance")]
     pub near: Option<airglow::radiance::Control>,
+    /// What the shadow pass counts, where it was asked to.
+    #[cfg(feature = "shadow")]
+    pub shadow_counts: Vec<super::shadow::CountsSlot>,
     /// The views, which turn with the light.
     pub views: Vec<SharedView>,
     /// The fog pass of each view that has one.
@@ -59,6 +64,11 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         handle
     });
 
+    // What moves is posed, and hides some of the light from every vertex.
+    let posed = renderer.skins.as_ref().map_or(Vec::new(), |skins| skins.add(&mut graph, &mut imports));
+    #[cfg(feature = "shadow")]
+    let shadowed = shadow(renderer, settings, &mut graph, &mut imports, &posed);
+
     // It becomes the light that leaves each vertex, once for all views: by the pass, or from an array that the host
     // brings.
     let (bytes, time) = (renderer.relight_bytes, renderer.relight_seconds);
@@ -78,8 +88,11 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
                 _ => Light::None,
             };
             let placed = lit.instances.iter().zip(lit.orientations());
-            let instances = placed.map(|(instance, orientation)| Instance {
+            let instances = placed.enumerate().map(|(number, (instance, orientation))| Instance {
                 orientation,
+                #[cfg(feature = "shadow")]
+                visibility: shadowed.visibility.get(number).copied().flatten(),
+                normals: posed.iter().find(|posed| posed.instance == number).map(|posed| posed.normals),
                 ..Instance::new(lit.meshes[instance.transfer])
             });
             #[cfg_attr(
@@ -155,6 +168,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             colours,
             lights,
             behind.as_ref(),
+            &posed,
             size,
         ));
     }
@@ -194,11 +208,40 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             #[cfg(feature = "radiance")]
             near,
             views,
+            #[cfg(feature = "shadow")]
+            shadow_counts: shadowed.counts,
             #[cfg(feature = "fog")]
             fog,
             window,
         },
     })
+}
+
+/// The shadows of what moves, or the reason why there are none.
+#[cfg(feature = "shadow")]
+fn shadow(
+    renderer: &Renderer<'_>,
+    settings: &Settings,
+    graph: &mut Graph<Record>,
+    imports: &mut Imports,
+    posed: &[Posed],
+) -> super::shadow::Shadowed {
+    let present = match &renderer.lighting {
+        Lighting::Relight(lit) if !settings.without_relight => lit.shadow.as_ref(),
+        _ => None,
+    };
+    match present {
+        Some(pass) if settings.without_shadow => graph.leave_out(super::shadow::asked(pass.bytes())),
+        Some(pass) => return pass.add(graph, imports, posed, settings.count_shadow),
+        None => {
+            let asked = |left_out: &airglow_graph::LeftOut| match settings.without_shadow {
+                true => super::shadow::asked(left_out.bytes),
+                false => left_out.clone(),
+            };
+            renderer.unshadowed.iter().map(asked).for_each(|left_out| graph.leave_out(left_out));
+        }
+    }
+    super::shadow::Shadowed::default()
 }
 
 /// What a medium before the environment does to the bands of its light, where there is one.

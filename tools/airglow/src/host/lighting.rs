@@ -47,6 +47,9 @@ pub(super) struct Lit {
     pub(super) relight: Relight,
     pub(super) meshes: Vec<MeshId>,
     pub(super) instances: Vec<InstanceTransfer>,
+    /// The shadows of what moves, where something does.
+    #[cfg(feature = "shadow")]
+    pub(super) shadow: Option<super::shadow::SceneShadow>,
     /// The light of near emitters, where the scene has them.
     #[cfg(feature = "radiance")]
     pub(super) near: Option<super::near::NearLight>,
@@ -95,6 +98,8 @@ impl Source {
         let requirements = requirements.and(&super::near::requirements(scene));
         #[cfg(feature = "fog")]
         let requirements = requirements.and(&super::fog::requirements(scene));
+        #[cfg(feature = "shadow")]
+        let requirements = requirements.and(&super::shadow::requirements(scene));
         #[cfg(feature = "normals")]
         let requirements = requirements.and(&super::mapped::requirements(scene));
         requirements
@@ -127,15 +132,19 @@ impl Lit {
         let settings = airglow::relight::Settings { health: transfer.health, ..relight_settings(scene) };
         let mut relight = Relight::new(context, settings).map_err(Failure::work)?;
         let mut meshes = Vec::with_capacity(transfer.transfers.len());
-        for (transfer, account) in transfer.transfers.iter().zip(&transfer.accounts) {
-            let count = transfer.vertex_count as u32;
-            let mesh = relight.add_mesh(context, &account.name, count, Some(&transfer.coefficients));
+        for (index, (baked, account)) in transfer.transfers.iter().zip(&transfer.accounts).enumerate() {
+            let count = baked.vertex_count as u32;
+            let moves = transfer.instances.iter().any(|lit| lit.moves && lit.transfer == index);
+            let vectors = (!moves).then_some(&baked.coefficients[..]);
+            let mesh = relight.add_mesh(context, &account.name, count, vectors);
             meshes.push(mesh.map_err(Failure::work)?);
         }
         Ok(Self {
             relight,
             meshes,
             instances: transfer.instances.clone(),
+            #[cfg(feature = "shadow")]
+            shadow: super::shadow::SceneShadow::new(device, scene, transfer)?,
             #[cfg(feature = "radiance")]
             near: super::near::NearLight::new(context, scene, transfer)?,
         })
@@ -179,6 +188,9 @@ fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
             true => airglow::relight::LightKind::Vertex,
             false => airglow::relight::LightKind::Uniform,
         },
+        #[cfg(feature = "shadow")]
+        visibility: super::shadow::is_drawn(scene),
+        normals: !scene.figures.is_empty(),
         ..airglow::relight::Settings::default()
     }
 }

@@ -12,6 +12,9 @@ pub mod airs;
 pub mod complete;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
+#[cfg(feature = "relight")]
+pub mod average;
+pub mod ball;
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;
@@ -33,6 +36,8 @@ pub mod lighting;
 pub mod lights;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod mapped;
+#[cfg(feature = "relight")]
+pub mod moving;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod near;
 #[cfg(feature = "relight")]
@@ -42,9 +47,17 @@ pub mod scene;
 pub mod settings;
 #[cfg(feature = "relight")]
 pub mod shaders;
+#[cfg(all(feature = "shadow", feature = "relight"))]
+pub mod shadow;
+#[cfg(feature = "relight")]
+pub mod skin;
 #[cfg(feature = "relight")]
 pub mod sky;
-#[cfg(all(feature = "relight", any(feature = "fog", feature = "radiance")))]
+#[cfg(all(feature = "shadow", feature = "relight"))]
+pub mod sphere_mesh;
+#[cfg(all(feature = "shadow", feature = "relight"))]
+pub mod spheres;
+#[cfg(all(feature = "relight", any(feature = "fog", feature = "radiance", feature = "shadow")))]
 pub mod strip;
 pub mod texture;
 pub mod transfer;

@@ -10,7 +10,6 @@ use airglow_gpu::{
     Buffer, Calibration, Execution, FrameTimes, Health, Imports, Label, Location, Timing, TimingSummary,
 };
 use airglow_graph::{BufferDesc, LeftOut, Plan};
-use airglow_math::sequence;
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
 
@@ -29,6 +28,7 @@ use super::mapped::MappedMaterials;
 use super::near::Arrival;
 use super::scene::{self, DeviceScene};
 pub use super::settings::{Air, Settings};
+use super::skin::Skins;
 use super::unread;
 use super::upload;
 use super::view::{self, ViewConstants};
@@ -45,6 +45,11 @@ pub struct Renderer<'d> {
     pub(super) environment: Option<EnvironmentMap>,
     pub(super) ambient: [f32; 3],
     pub(super) lighting: Lighting,
+    /// What poses the figures of the scene, where it has some.
+    pub(super) skins: Option<Skins>,
+    /// Why no shadow of what moves is drawn.
+    #[cfg(feature = "shadow")]
+    pub(super) unshadowed: Option<LeftOut>,
     pub(super) pipelines: Pipelines,
     /// The scene's lights, in its medium.
     pub(super) lights: Option<LightsConstants>,
@@ -136,10 +141,6 @@ impl<'d> Renderer<'d> {
         filter: Filter,
     ) -> Outcome<Self> {
         let context = device.context();
-        #[cfg_attr(
-            not(any(feature = "fog", feature = "normals")),
-            expect(unused_mut, reason = "only rooms add to draws")
-        )]
         let mut device_scene =
             device.run(|recorder| scene::upload(recorder, scene)).map_err(Failure::work)?;
         let ambient = match &scene.environment {
@@ -171,6 +172,7 @@ impl<'d> Renderer<'d> {
         let (mapped, about_maps) = (maps.fragments(), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
+        let skins = Skins::new(device, scene, &mut device_scene)?;
         let lights = !scene.lights.is_empty();
         #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only a medium adds to the sky"))]
         let mut pipelines =
@@ -190,6 +192,9 @@ impl<'d> Renderer<'d> {
             }),
             ambient,
             lighting: Lighting::new(device, scene, source)?,
+            skins,
+            #[cfg(feature = "shadow")]
+            unshadowed: super::shadow::left_out(scene),
             pipelines,
             lights: LightsConstants::of_scene(scene),
             #[cfg(feature = "fog")]
@@ -328,26 +333,6 @@ impl<'d> Renderer<'d> {
         Ok(Compiled { execution, imports, timing, turning })
     }
 
-    /// The mean of `passes` frames, each moved by its own fraction of a sample: scene-linear.
-    pub fn average(&mut self, settings: &Settings, passes: u32) -> Outcome<FloatImage> {
-        let Compiled { mut execution, imports, turning, .. } = self.compile(settings, 1, false)?;
-        let size = settings.picture_size();
-        let mut sums = vec![0.0_f64; 3 * size[0] as usize * size[1] as usize];
-        let sides = settings.size.map(|side| (side * settings.samples) as f32);
-        for pass in 0..passes {
-            let [x, y] = sequence::sobol(pass, 0).map(|place| 2.0 * place as f32 - 1.0);
-            let offset = if passes > 1 { [x / sides[0], y / sides[1]] } else { [0.0; 2] };
-            for (shared, view) in turning.views.iter().zip(self.views(settings, settings.turn)) {
-                shared.set(view.moved(offset));
-            }
-            self.device.frames(&mut execution, &imports, None, 1, |_| Ok(()))?;
-            let linear: Vec<f32> = self.linear.read(0, sums.len()).map_err(Failure::work)?;
-            sums.iter_mut().zip(linear).for_each(|(sum, value)| *sum += f64::from(value));
-        }
-        let values: Vec<f32> = sums.iter().map(|sum| (sum / f64::from(passes)) as f32).collect();
-        Ok(view::picture(size, &values))
-    }
-
     /// Draws `frames` frames and reads the last one back.
     pub fn draw(&mut self, settings: &Settings, frames: usize) -> Outcome<Picture> {
         self.draw_counted(settings, frames, false)
@@ -361,6 +346,7 @@ impl<'d> Renderer<'d> {
         let turn_light = |frame: usize| {
             // One plan for all frames: only the rotation of the light and of the views' sky changes.
             let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;
+            self.move_to(settings.time + settings.step * frame as f64)?;
             self.turn(&turning, settings, turn)
         };
         let before = context.calibrate().map_err(Failure::work)?;

@@ -24,6 +24,14 @@ pub struct Settings {
     pub spin: f64,
     /// Leaves the relight pass out of the frame, though it is there: ambient light only.
     pub without_relight: bool,
+    /// Leaves the shadows of what moves out of the frame, though the pass is there.
+    pub without_shadow: bool,
+    /// Has the shadow pass's counts read back.
+    pub count_shadow: bool,
+    /// When the first frame is, seconds after the scene's time 0: figures stand and walk by it.
+    pub time: f64,
+    /// Seconds from one frame to the next.
+    pub step: f64,
     /// How the scene's medium is drawn.
     pub air: Air,
     /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
@@ -64,6 +72,25 @@ impl Air {
 }
 
 impl Settings {
+    /// A frame of that size with all passes, one view and one sample a pixel, at the scene's time 0.
+    pub fn plain(size: [u32; 2]) -> Self {
+        Self {
+            size,
+            views: 1,
+            samples: 1,
+            exposure: 1.0,
+            turn: DQuat::IDENTITY,
+            spin: 0.0,
+            without_relight: false,
+            without_shadow: false,
+            count_shadow: false,
+            time: 0.0,
+            step: 0.0,
+            air: Air::Fog,
+            window: None,
+        }
+    }
+
     /// Whether blue is the lowest byte of a pixel for the display.
     pub fn blue_first(&self) -> bool {
         let blue_first = [vk::Format::B8G8R8A8_SRGB, vk::Format::B8G8R8A8_UNORM];

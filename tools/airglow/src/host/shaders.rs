@@ -112,6 +112,11 @@ pub fn depth_fog_fragment() -> Vec<u32> {
     module!("depth_fog")
 }
 
+/// Vertices into the pose of their joints.
+pub fn skin() -> Vec<u32> {
+    module!("skin")
+}
+
 /// Samples to picture.
 pub fn develop() -> Vec<u32> {
     module!("develop")

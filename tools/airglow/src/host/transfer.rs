@@ -22,6 +22,9 @@ pub struct SceneTransfer {
     pub instances: Vec<InstanceTransfer>,
     /// How each transfer came to be.
     pub accounts: Vec<Account>,
+    /// The spheres of what moves.
+    #[cfg(all(feature = "relight", feature = "shadow"))]
+    pub spheres: Vec<super::spheres::InstanceSpheres>,
     /// Whether the pass is to count bad texels of the environment.
     pub health: bool,
 }
@@ -35,6 +38,10 @@ pub struct InstanceTransfer {
     pub rotation: DQuat,
     /// Whether that space is mirrored through its origin before it is turned.
     pub inverted: bool,
+    /// Whether the transfer is in world space.
+    pub in_world: bool,
+    /// Whether the instance moves by itself: then it is lit by its normals, and no transfer is baked.
+    pub moves: bool,
 }
 
 /// What a bake took.
@@ -58,6 +65,8 @@ pub struct Account {
 
 /// One bake to make: a mesh in some space, and what blocks its rays there.
 struct Job<'a> {
+    /// Nothing static shadows it: it has the closed form.
+    open: bool,
     name: String,
     mesh: Mesh<'a>,
     transform: Mat4,
@@ -83,7 +92,14 @@ impl Job<'_> {
 pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output) -> Outcome<SceneTransfer> {
     let holes = holes::of_scene(scene);
     let (jobs, instances) = jobs(scene, quality.shadow, &holes);
-    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new(), health: false };
+    let mut result = SceneTransfer {
+        transfers: Vec::new(),
+        instances,
+        accounts: Vec::new(),
+        #[cfg(all(feature = "relight", feature = "shadow"))]
+        spheres: super::spheres::of_scene(scene, cache, output)?,
+        health: false,
+    };
     for job in &jobs {
         let (transfer, account) = bake(job, quality, cache, output)?;
         result.transfers.push(transfer);
@@ -98,7 +114,14 @@ pub fn unbaked(scene: &Scene) -> Outcome<SceneTransfer> {
     let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
     let (jobs, instances) = jobs(scene, scene.quality.shadow, &none);
     let order = scene.quality.order as usize;
-    let mut result = SceneTransfer { transfers: Vec::new(), instances, accounts: Vec::new(), health: false };
+    let mut result = SceneTransfer {
+        transfers: Vec::new(),
+        instances,
+        accounts: Vec::new(),
+        #[cfg(all(feature = "relight", feature = "shadow"))]
+        spheres: super::spheres::unfitted(scene)?,
+        health: false,
+    };
     for job in &jobs {
         let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
         result.transfers.push(baked.transfer);
@@ -107,12 +130,13 @@ pub fn unbaked(scene: &Scene) -> Outcome<SceneTransfer> {
     Ok(result)
 }
 
-/// Vertices that [`of_scene`] would bake, and vertices of all instances.
+/// Vertices whose vectors [`of_scene`] would give the device, and vertices of all instances.
 pub fn vertex_counts(scene: &Scene) -> [u64; 2] {
     let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
-    let (jobs, _) = jobs(scene, scene.quality.shadow, &none);
+    let (jobs, instances) = jobs(scene, scene.quality.shadow, &none);
     let drawn = scene.instances.iter().map(|instance| scene.meshes[instance.mesh].positions.len() as u64);
-    [jobs.iter().map(|job| job.mesh.positions.len() as u64).sum(), drawn.sum()]
+    let baked = (0..jobs.len()).filter(|job| !instances.iter().any(|lit| lit.moves && lit.transfer == *job));
+    [baked.map(|job| jobs[job].mesh.positions.len() as u64).sum(), drawn.sum()]
 }
 
 /// One job for each mesh that its instances can share in object space, and one for each other instance.
@@ -125,7 +149,8 @@ fn jobs<'a>(
     let mut shared: Vec<Option<usize>> = vec![None; scene.meshes.len()];
     let mut instances = Vec::with_capacity(scene.instances.len());
     for (number, instance) in scene.instances.iter().enumerate() {
-        let frame = if shadow == Shadow::Scene { None } else { shared_frame(instance) };
+        let moves = scene.moves(number);
+        let frame = if shadow == Shadow::Scene || moves { None } else { shared_frame(instance) };
         let transfer = match (frame, shared[instance.mesh]) {
             (Some(_), Some(job)) => job,
             (Some(_), None) => {
@@ -138,8 +163,9 @@ fn jobs<'a>(
                 jobs.len() - 1
             }
         };
+        let in_world = frame.is_none();
         let (rotation, inverted) = frame.unwrap_or((DQuat::IDENTITY, false));
-        instances.push(InstanceTransfer { transfer, rotation, inverted });
+        instances.push(InstanceTransfer { transfer, rotation, inverted, in_world, moves });
     }
     (jobs, instances)
 }
@@ -189,7 +215,8 @@ fn object_job<'a>(
         Shadow::Unshadowed => Vec::new(),
         Shadow::Object | Shadow::Scene => vec![occluder(scene, instance, Mat4::IDENTITY, holes)],
     };
-    Job { name: mesh.name.to_owned(), mesh, transform: Mat4::IDENTITY, occluders }
+    let open = shadow == Shadow::Unshadowed;
+    Job { open, name: mesh.name.to_owned(), mesh, transform: Mat4::IDENTITY, occluders }
 }
 
 fn world_job<'a>(
@@ -199,10 +226,12 @@ fn world_job<'a>(
     holes: &'a [Option<holes::Holes<'a>>],
 ) -> Job<'a> {
     let placed = |number: usize| occluder(scene, number, scene.instances[number].transform, holes);
+    let open = shadow == Shadow::Unshadowed || scene.moves(instance);
     let occluders = match shadow {
-        Shadow::Unshadowed => Vec::new(),
-        Shadow::Object => vec![placed(instance)],
-        Shadow::Scene => (0..casters(scene)).map(placed).collect(),
+        _ if open => Vec::new(),
+        Shadow::Unshadowed | Shadow::Object => vec![placed(instance)],
+        // What moves casts its shadow in the frame.
+        Shadow::Scene => (0..casters(scene)).filter(|number| !scene.moves(*number)).map(placed).collect(),
     };
     let mesh = bake_mesh(scene, instance);
     let (mesh_name, instance_name) = (mesh.name, &scene.instances[instance].name);
@@ -211,13 +240,13 @@ fn world_job<'a>(
     } else {
         format!("{mesh_name} at {instance_name}")
     };
-    Job { name, mesh, transform: scene.instances[instance].transform, occluders }
+    Job { open, name, mesh, transform: scene.instances[instance].transform, occluders }
 }
 
 fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outcome<(Transfer, Account)> {
     let mut account = job.account();
     let order = quality.order as usize;
-    if quality.shadow == Shadow::Unshadowed {
+    if job.open {
         let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
         return Ok((baked.transfer, account));
     }
@@ -256,6 +285,6 @@ fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outc
 }
 
 /// The name with everything but letters and digits replaced, and not too long.
-fn file_name(name: &str) -> String {
+pub fn file_name(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(48).collect()
 }

@@ -12,6 +12,7 @@ use airglow_math::sequence;
 use airglow_scene::{Scene, Shadow};
 use glam::{DQuat, DVec3};
 
+use super::ball::Ball;
 use super::environment_samples::EnvironmentSamples;
 use super::{holes, transfer};
 use crate::failure::{Failure, Outcome};
@@ -25,15 +26,21 @@ pub fn of_scene(
     output: &Output,
 ) -> Outcome<Vec<Vec<[f32; 3]>>> {
     let holes = holes::of_scene(scene);
+    let balls: Vec<Ball> = scene.blockers.iter().map(Ball::new).collect();
     let placed = |number| transfer::occluder(scene, number, scene.instances[number].transform, &holes);
     let everything: Vec<_> = (0..transfer::casters(scene)).map(placed).collect();
     let one = |number| {
-        let blockers = match scene.quality.shadow {
-            Shadow::Unshadowed => &[],
-            Shadow::Object => everything.get(number..=number).unwrap_or_default(),
-            Shadow::Scene => &everything[..],
+        let blocks = |other: &usize| {
+            scene.moves(*other)
+                || match scene.quality.shadow {
+                    Shadow::Unshadowed => false,
+                    Shadow::Object => *other == number,
+                    Shadow::Scene => true,
+                }
         };
-        let occluders = Occluders::build(blockers).map_err(Failure::input)?;
+        let blockers = (0..everything.len()).filter(blocks).map(|other| everything[other]);
+        let blockers: Vec<_> = blockers.chain(balls.iter().map(Ball::occluder)).collect();
+        let occluders = Occluders::build(&blockers).map_err(Failure::input)?;
         let instance = &scene.instances[number];
         let mesh = transfer::bake_mesh(scene, number);
         let probe =

@@ -1,7 +1,7 @@
 //! What a scene holds that this host does not draw: said in a warning and in the plan, never silently dropped.
 
 use airglow_graph::LeftOut;
-use airglow_scene::{Material, Scene};
+use airglow_scene::{Instance, Material, Scene};
 
 #[cfg(feature = "relight")]
 use super::lighting::Source;
@@ -21,18 +21,26 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     let emitters = if super::near::is_drawn(scene) { 0 } else { scene.emitters.len() };
     #[cfg(not(all(feature = "radiance", feature = "relight")))]
     let emitters = scene.emitters.len();
+    #[cfg(all(feature = "shadow", feature = "relight"))]
+    let blockers = if super::shadow::is_drawn(scene) { 0 } else { scene.blockers.len() };
+    #[cfg(not(all(feature = "shadow", feature = "relight")))]
+    let blockers = scene.blockers.len();
+    let is_still = |(number, instance): &(usize, &Instance)| instance.skin.is_some() && !scene.moves(*number);
+    let still = scene.instances.iter().enumerate().filter(is_still).count();
+    let played = scene.figures.iter().filter(|figure| figure.animation.is_some()).count();
+    let unplayed = scene.animations.len().saturating_sub(played);
     let kinds = [
         (scene.lights.len().saturating_sub(MAX_LIGHTS), "further lights", "fewer lights: a draw takes 64"),
         (usize::from(scene.medium.is_some() && !cfg!(feature = "fog")), "media", "the room of the fog pass"),
         (emitters, "near emitters", "the room of the radiance pass, and 3 to 6 bands"),
-        (scene.blockers.len(), "blockers", "a pass that casts their shadows"),
+        (blockers, "blockers", "the room of the shadow pass, and 3 to 6 bands"),
         (
             normal_textures,
             "normal textures",
             "lights of the scene's own in clear air, and the room of normal maps",
         ),
-        (scene.skins.len(), "skins (drawn in their bind pose)", "a host that moves their vertices"),
-        (scene.animations.len(), "animations", "a host that plays them"),
+        (still, "skins (drawn in their bind pose)", "a [[figure]] of their file"),
+        (unplayed, "animations", "a [[figure]] of their file"),
     ];
     let present = kinds.into_iter().filter(|(count, ..)| *count > 0);
     present

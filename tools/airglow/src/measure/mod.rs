@@ -7,5 +7,7 @@ pub mod lights;
 pub mod near;
 pub mod pass;
 pub mod profiler;
+#[cfg(feature = "shadow")]
+pub mod shadow;
 pub mod stat;
 pub mod trace;

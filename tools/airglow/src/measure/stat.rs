@@ -9,6 +9,8 @@ use super::lights::LightStat;
 use super::near::NearStat;
 use super::pass::{PassStat, counted};
 use super::profiler::ProfilerCost;
+#[cfg(feature = "shadow")]
+use super::shadow::ShadowStat;
 use crate::host::device::Device;
 use crate::host::renderer::{Picture, Settings, WARM_UP};
 use crate::report::model::Machine;
@@ -38,6 +40,9 @@ pub struct Stat {
     /// What the radiance pass sampled, where there is one.
     #[cfg(feature = "radiance")]
     pub near: Option<NearStat>,
+    /// What the shadow pass found near its receivers, where there is one.
+    #[cfg(feature = "shadow")]
+    pub shadow: Option<ShadowStat>,
     /// What the passes counted; with --health, where they have anything to count.
     pub health: Vec<Count>,
     /// Device memory by owner.
@@ -79,6 +84,8 @@ impl Stat {
             lights: picture.lights.clone(),
             #[cfg(feature = "radiance")]
             near: None,
+            #[cfg(feature = "shadow")]
+            shadow: None,
             health: Vec::new(),
             memory: device
                 .context()
@@ -108,6 +115,8 @@ impl Stat {
         text.extend(self.lights.iter().map(LightStat::line));
         #[cfg(feature = "radiance")]
         text.extend(self.near.iter().map(NearStat::line));
+        #[cfg(feature = "shadow")]
+        text.extend(self.shadow.iter().map(ShadowStat::line));
         text.extend(self.health.iter().map(Count::line));
         for owner in &self.memory {
             text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));

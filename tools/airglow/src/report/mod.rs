@@ -16,6 +16,10 @@ pub mod ranking;
 pub mod radiance;
 #[cfg(feature = "relight")]
 pub mod relight;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod shadow;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod steadiness;
 pub mod sweep;
 pub mod table;
 #[cfg(all(any(feature = "fog", feature = "radiance"), feature = "relight"))]

@@ -147,6 +147,8 @@ impl<'d> Viewer<'d> {
         };
         let turn = self.controls.turn() * settings.turn;
         self.renderer.turn(&compiled.turning, &settings, turn)?;
+        let walked = self.first.map_or(0.0, |first| first.elapsed().as_secs_f64());
+        self.renderer.move_to(settings.time + walked)?;
         let Compiled { execution, imports, timing, turning } = compiled;
         if let Some(window) = &turning.window {
             imports.image(window, &frame.image);

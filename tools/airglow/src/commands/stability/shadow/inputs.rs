@@ -1,0 +1,187 @@
+//! Spheres, vectors and lights at their extremes.
+
+use airglow::math::sh::{coefficient_count, project};
+use airglow::shadow::eval::{ExponentialRow, exponentials};
+use airglow::shadow::reference::truth;
+use airglow::shadow::{Evaluator, Exponential, ShadowError, Sphere};
+use glam::DVec3;
+
+use super::super::Row;
+use super::{BOUND, Sky, Trial, again, error, open, row, wanted};
+
+/// Orders that inputs are tried at: the least and the most.
+const ORDERS: [usize; 2] = [3, 6];
+/// Degree of the rule that what is really open is integrated by.
+const DEGREE: usize = 400;
+/// How far exponentials of the device may be off the same way in f64, over the size of the result or 1.
+const EXPONENTIAL: f64 = 3e-4;
+
+fn sphere(x: f64, radius: f64) -> Sphere {
+    Sphere { center: DVec3::new(x, 0.0, 0.0), radius }
+}
+
+/// All inputs, or the one called `only`.
+pub fn rows(trial: &Trial<'_>, only: Option<&str>) -> Result<Vec<Row>, ShadowError> {
+    let mut rows = Vec::new();
+    let single = [
+        ("receiver in the middle of a sphere", sphere(0.0, 1.0)),
+        ("receiver within a sphere", sphere(0.5, 1.0)),
+        ("receiver on a sphere", sphere(1.0, 1.0)),
+        ("receiver a hair outside of a sphere", sphere(1.0 + 1e-7, 1.0)),
+        ("radius 0", sphere(2.0, 0.0)),
+        ("radius 0 at the receiver", sphere(0.0, 0.0)),
+        ("radius 1e6, seen from 1 above", sphere(1e6 + 1.0, 1e6)),
+        ("radius 1e6, seen from 1e6 above", sphere(2e6, 1e6)),
+        ("radius 1e-6 at a distance of 1e6", sphere(1e6, 1e-6)),
+    ];
+    for order in ORDERS {
+        for (name, sphere) in single {
+            let name = format!("{name}, order {order}");
+            if wanted(only, &name) {
+                let sky = Sky { order, spheres: vec![sphere], clamp: false };
+                let (found, truth, _) = sky.visibility(trial)?;
+                rows.push(row(
+                    &name,
+                    format!("a sphere of radius {:e} at a distance of {:e}", sphere.radius, sphere.center.x),
+                    format!("open {:.6}", open(&found)),
+                    format!("open {:.6}", open(&truth)),
+                    error(&found, &truth),
+                    BOUND,
+                    sky.again(&name),
+                ));
+            }
+        }
+        rows.extend(overlapping(trial, only, order)?);
+        rows.extend(below(trial, only, order)?);
+        rows.extend(long_vectors(trial, only, order)?);
+        rows.extend(peak(trial, only, order)?);
+    }
+    Ok(rows)
+}
+
+/// A thousand blockers in one place: nothing may be negative or more than there is; next to what is really open.
+fn overlapping(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
+    let name = format!("1000 overlapping blockers, order {order}");
+    if !wanted(only, &name) {
+        return Ok(None);
+    }
+    let place = |i: u32| {
+        let turn = DVec3::new(f64::from(i).sin(), f64::from(i).cos(), f64::from(2 * i).sin());
+        Sphere { center: 2.0 * DVec3::X + 0.2 * turn, radius: 1.0 }
+    };
+    let sky = Sky { order, spheres: (0..1000).map(place).collect(), clamp: true };
+    let (found, _, clamped) = sky.visibility(trial)?;
+    let truth = truth(order, DEGREE, &airglow::shadow::reference::caps(&sky.spheres, DVec3::ZERO))?;
+    // What a visibility must obey: a mean from 0 to 1, and a square whose integral is no more than its own.
+    let square: f64 = found.iter().map(|value| value * value).sum::<f64>() / (4.0 * std::f64::consts::PI);
+    let beyond = (square - open(&found)).max(-open(&found)).max(open(&found) - 1.0).max(0.0);
+    let finite = found.iter().all(|value| value.is_finite());
+    let broken = if finite { beyond } else { f64::INFINITY };
+    Ok(Some(row(
+        &name,
+        "spheres of radius 1 within 0.35 of one another; the error is how far the result is from one that a visibility can be"
+            .to_owned(),
+        format!("open {:.4}, mean square {square:.4}; {clamped} receiver clamped", open(&found)),
+        format!("open {:.4}", open(&truth)),
+        broken,
+        1e-5,
+        sky.again(&name),
+    )))
+}
+
+/// Everything below the tangent plane of a receiver with a normal.
+fn below(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
+    let name = format!("all blockers below the horizon, order {order}");
+    if !wanted(only, &name) {
+        return Ok(None);
+    }
+    let place = |i: u32| Sphere {
+        center: DVec3::new(2.0 * f64::from(i).sin(), -1.2 - 0.02 * f64::from(i), 2.0 * f64::from(i).cos()),
+        radius: 1.0,
+    };
+    let spheres: Vec<Sphere> = (0..60).map(place).collect();
+    let frame = trial.frame(order, true, Some([0.0, 1.0, 0.0]), &spheres)?;
+    let found: Vec<f64> = frame.values.iter().copied().map(f64::from).collect();
+    let mut all = vec![0.0; coefficient_count(order)];
+    all[0] = (4.0 * std::f64::consts::PI).sqrt();
+    Ok(Some(row(
+        &name,
+        "60 spheres that do not reach the tangent plane".to_owned(),
+        format!(
+            "open {:.8}, {} of {} clusters out of reach",
+            open(&found),
+            frame.counts.open,
+            frame.counts.clusters
+        ),
+        "open 1".to_owned(),
+        error(&found, &all),
+        1e-6,
+        again(&name),
+    )))
+}
+
+/// Vectors with norms up to 50, as many spheres give them: a mean far below 0, and bands in all directions.
+fn long_vectors(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Vec<Row>, ShadowError> {
+    let count = coefficient_count(order);
+    let mut rows = Vec::new();
+    for norm in [1.0, 10.0, 50.0] {
+        let name = format!("a logarithm of norm {norm}, order {order}");
+        if !wanted(only, &name) {
+            continue;
+        }
+        let mut f: Vec<f64> = (0..count).map(|i| f64::from(1 + i as u32).sin()).collect();
+        // No visibility is above 1: the mean of a logarithm outweighs the rest.
+        f[0] = -2.0 * f.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let size = f.iter().map(|value| value * value).sum::<f64>().sqrt();
+        f.iter_mut().for_each(|value| *value *= norm / size);
+        let input = [ExponentialRow { order, f: f.clone(), method: Exponential::Adaptive }];
+        let Some(found) = exponentials(trial.bench, &input)?.into_iter().next().transpose()? else {
+            continue;
+        };
+        let truth = Evaluator::new(order)?.exponential(Exponential::Adaptive, &f)?;
+        let scale = truth.iter().map(|value| value * value).sum::<f64>().sqrt().max(1.0);
+        let cells: Vec<String> = f.iter().map(|value| format!("{value:e}")).collect();
+        rows.push(row(
+            &name,
+            "the mean twice as long as all the rest together".to_owned(),
+            format!("open {:.6e}", open(&found.values)),
+            format!("open {:.6e}", open(&truth)),
+            error(&found.values, &truth) / scale,
+            EXPONENTIAL,
+            format!(
+                "printf 'order,f\\n{order},{}\\n' > rows.csv\n\
+                 airglow eval sh-exp --in rows.csv --out results.csv --reference",
+                cells.join(";")
+            ),
+        ));
+    }
+    Ok(rows)
+}
+
+/// A peak of 1e5 W/sr/m2 two degrees wide behind sixteen spheres: the product of light and visibility.
+fn peak(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
+    let name = format!("a peak of 1e5 W/sr/m2, order {order}");
+    if !wanted(only, &name) {
+        return Ok(None);
+    }
+    let axis = DVec3::new(0.6, 0.48, 0.64);
+    let light = project(order, DEGREE, |direction| if direction.dot(axis) > 0.9994 { 1e5 } else { 1.0 })?;
+    let place = |i: u32| Sphere {
+        center: 3.0
+            * (axis + 0.4 * DVec3::new(f64::from(i).sin(), f64::from(3 * i).cos(), f64::from(i).cos())),
+        radius: 0.3,
+    };
+    let sky = Sky { order, spheres: (0..16).map(place).collect(), clamp: false };
+    let (found, truth, _) = sky.visibility(trial)?;
+    let dot = |v: &[f64]| light.iter().zip(v).map(|(l, v)| l * v).sum::<f64>();
+    let all = light[0] * (4.0 * std::f64::consts::PI).sqrt();
+    Ok(Some(row(
+        &name,
+        "light integrated over the sphere, behind 16 spheres, over the same without them".to_owned(),
+        format!("{:.6}", dot(&found) / all),
+        format!("{:.6}", dot(&truth) / all),
+        (dot(&found) - dot(&truth)).abs() / all,
+        BOUND,
+        sky.again(&name),
+    )))
+}

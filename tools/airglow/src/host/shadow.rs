@@ -1,0 +1,257 @@
+//! The shadow pass with a scene: its spheres, the receivers of every instance, and what it counts.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use airglow::shadow::{self, Blockers, Counts, Receivers, Shadow, Sphere};
+use airglow_gpu::{Buffer, Imports, Readback, Record, Requirements};
+use airglow_graph::{self as graph, Access, Graph, Handle, LeftOut, PassKind};
+use airglow_scene::{Mesh, Scene};
+use glam::{DMat4, DVec3, Mat4};
+
+use super::device::Device;
+use super::skin::{self, Posed};
+use super::spheres::InstanceSpheres;
+use super::transfer::SceneTransfer;
+use super::upload;
+use crate::failure::{Failure, Outcome};
+
+/// Bands that shadows can have.
+const ORDERS: std::ops::RangeInclusive<u32> = 3..=6;
+
+/// The pass with a scene's spheres and receivers.
+pub struct SceneShadow {
+    pass: Shadow,
+    instances: Vec<Instance>,
+    fixed: Vec<Sphere>,
+    spheres: Vec<InstanceSpheres>,
+    moving: Scene,
+}
+
+/// The vertices of an instance.
+struct Instance {
+    receivers: Receivers,
+    blockers: Blockers,
+    /// To the space that the transfer of the instance is in.
+    receiver_from_world: DMat4,
+    /// Positions and normals in that space; none for an instance that moves, whose posed ones are taken.
+    vertices: Option<[Buffer; 2]>,
+}
+
+/// What a frame has of the pass.
+#[derive(Default)]
+pub struct Shadowed {
+    /// Visibility of each instance's vertices.
+    pub visibility: Vec<Option<Handle<graph::Buffer>>>,
+    /// What the clusters of all instances counted, once the frame is done; filled only if it was asked for.
+    pub counts: Vec<CountsSlot>,
+}
+
+/// What is read back of an instance's clusters.
+pub type CountsSlot = Arc<Mutex<Option<Readback>>>;
+
+/// Whether a scene has something that moves or is stated to cast shadows.
+fn blocks(scene: &Scene) -> bool {
+    !scene.blockers.is_empty() || scene.figures.iter().any(|figure| figure.spheres > 0)
+}
+
+/// Whether the pass has something to do in a scene.
+pub fn is_drawn(scene: &Scene) -> bool {
+    blocks(scene) && ORDERS.contains(&scene.quality.order)
+}
+
+/// A scene in which nothing that moves casts shadows; figures stay.
+pub fn without(mut scene: Scene) -> Scene {
+    scene.blockers.clear();
+    scene.figures.iter_mut().for_each(|figure| figure.spheres = 0);
+    scene
+}
+
+/// What the device must offer for a scene.
+pub fn requirements(scene: &Scene) -> Requirements {
+    if is_drawn(scene) { Shadow::requirements() } else { Requirements::engine() }
+}
+
+/// Bytes of the visibility of all vertices.
+fn bytes(scene: &Scene) -> u64 {
+    let vertices = |instance: &airglow_scene::Instance| scene.meshes[instance.mesh].positions.len() as u64;
+    let count: u64 = scene.instances.iter().map(vertices).sum();
+    4 * u64::from(scene.quality.order).pow(2) * count
+}
+
+/// The record of the pass being left out of a scene; `None` where it has something to do.
+pub fn left_out(scene: &Scene) -> Option<LeftOut> {
+    if is_drawn(scene) {
+        return None;
+    }
+    let (why, would_return) = match blocks(scene) {
+        true => ("it has no tables for so many bands", "3 to 6 bands"),
+        false => ("nothing that moves blocks", "a [[figure]] or a [[blocker]] in the scene file"),
+    };
+    Some(record(why, would_return, bytes(scene)))
+}
+
+/// The record of the pass being left out by the host.
+pub fn asked(bytes: u64) -> LeftOut {
+    record("the host was asked to leave it out (--without shadow)", "a frame without --without shadow", bytes)
+}
+
+fn record(why: &str, would_return: &str, bytes: u64) -> LeftOut {
+    let [what, why, would_return] = ["shadow", why, would_return].map(str::to_owned);
+    LeftOut { what, why, bytes, time: None, would_return }
+}
+
+impl SceneShadow {
+    /// The pass for a scene, where it has something to do.
+    pub fn new(device: &Device<'_>, scene: &Scene, transfer: &SceneTransfer) -> Outcome<Option<Self>> {
+        if !is_drawn(scene) {
+            return Ok(None);
+        }
+        let order = scene.quality.order as usize;
+        let settings = shadow::Settings { order, normals: true, ..shadow::Settings::default() };
+        let pass = Shadow::new(device.context(), settings).map_err(Failure::work)?;
+        let mut instances = Vec::with_capacity(scene.instances.len());
+        for (number, lit) in transfer.instances.iter().enumerate() {
+            // Baked in the world, or in the space of the object.
+            let frame = if lit.in_world { Mat4::IDENTITY } else { scene.instances[number].transform };
+            instances.push(Instance::new(device, &pass, scene, number, frame)?);
+        }
+        let fixed = scene.blockers.iter().map(|blocker| Sphere {
+            center: DVec3::from_array(blocker.center.map(f64::from)),
+            radius: f64::from(blocker.radius),
+        });
+        let (fixed, spheres) = (fixed.collect(), transfer.spheres.clone());
+        let shadow = Self { pass, instances, fixed, spheres, moving: skin::moving(scene) };
+        shadow.set_time(0.0)?;
+        Ok(Some(shadow))
+    }
+
+    /// Moves the spheres to where they are `seconds` after the scene's time 0, from the next recording on.
+    pub fn set_time(&self, seconds: f32) -> Outcome {
+        let poses: Vec<_> =
+            self.moving.figures.iter().map(|figure| self.moving.pose(figure, seconds)).collect();
+        let mut spheres = self.fixed.clone();
+        for moved in &self.spheres {
+            spheres.extend(moved.in_pose(&self.moving, &poses[moved.figure]));
+        }
+        let set = |instance: &Instance| instance.blockers.set(&spheres, instance.receiver_from_world);
+        self.instances.iter().try_for_each(set).map_err(Failure::input)
+    }
+
+    /// Adds the pass for every instance; those that move bring their vertices. With `count` the counts are read back.
+    pub fn add(
+        &self,
+        graph: &mut Graph<Record>,
+        imports: &mut Imports,
+        posed: &[Posed],
+        count: bool,
+    ) -> Shadowed {
+        let mut shadowed = Shadowed::default();
+        for (number, instance) in self.instances.iter().enumerate() {
+            let moved = posed.iter().find(|posed| posed.instance == number);
+            let vertices = match (&instance.vertices, moved) {
+                (Some(buffers), _) => Some(import(graph, imports, buffers)),
+                (None, moved) => moved.map(|moved| [moved.positions, moved.normals]),
+            };
+            let Some([positions, normals]) = vertices else {
+                shadowed.visibility.push(None);
+                continue;
+            };
+            let Instance { receivers, blockers, .. } = instance;
+            let added = self.pass.add(graph, receivers, blockers, positions, Some(normals));
+            shadowed.visibility.push(added.visibility);
+            if let (true, Some(records)) = (count, added.records) {
+                shadowed.counts.push(read_back(graph, records));
+            }
+        }
+        shadowed
+    }
+
+    /// Bytes of the visibility of all vertices.
+    pub fn bytes(&self) -> u64 {
+        let order = self.pass.settings().order;
+        self.instances.iter().map(|instance| instance.receivers.visibility_bytes(order)).sum()
+    }
+
+    /// Spheres of a frame.
+    pub fn sphere_count(&self) -> usize {
+        self.fixed.len() + self.spheres.iter().map(InstanceSpheres::count).sum::<usize>()
+    }
+}
+
+impl Instance {
+    /// The instance of that number, whose transfer is in `world_from_receiver`.
+    fn new(
+        device: &Device<'_>,
+        pass: &Shadow,
+        scene: &Scene,
+        number: usize,
+        world_from_receiver: Mat4,
+    ) -> Outcome<Self> {
+        let instance = &scene.instances[number];
+        let mesh = &scene.meshes[instance.mesh];
+        let receiver_from_world = world_from_receiver.inverse();
+        let receiver_from_object = receiver_from_world * instance.transform;
+        let (positions, normals) = match world_from_receiver == instance.transform {
+            true => (mesh.positions.clone(), mesh.normals.clone()),
+            false => still(mesh).posed(&[receiver_from_object]),
+        };
+        let receivers =
+            pass.receivers(device.context(), &instance.name, &positions).map_err(Failure::work)?;
+        let read = Access::ComputeStorageRead;
+        let vertices = (!scene.moves(number)).then(|| {
+            device.run(|recorder| {
+                Ok([
+                    upload::buffer(recorder, "receivers", &positions, read)?,
+                    upload::buffer(recorder, "normals of receivers", &normals, read)?,
+                ])
+            })
+        });
+        let vertices = vertices.transpose().map_err(Failure::work)?;
+        let receiver_from_world = receiver_from_world.as_dmat4();
+        Ok(Self { receivers, blockers: Blockers::default(), receiver_from_world, vertices })
+    }
+}
+
+/// A mesh in its bind pose.
+fn still(mesh: &Mesh) -> Mesh {
+    Mesh { positions: mesh.positions.clone(), normals: mesh.normals.clone(), ..Mesh::default() }
+}
+
+/// Arrays that do not change between frames.
+fn import(
+    graph: &mut Graph<Record>,
+    imports: &mut Imports,
+    buffers: &[Buffer; 2],
+) -> [Handle<graph::Buffer>; 2] {
+    let mut import = |name, buffer: &Buffer| {
+        let read = Access::ComputeStorageRead;
+        let handle = graph.import_buffer(name, *buffer.desc(), read, read);
+        imports.buffer(&handle, buffer);
+        handle
+    };
+    [import("receivers", &buffers[0]), import("normals of receivers", &buffers[1])]
+}
+
+fn read_back(graph: &mut Graph<Record>, records: Handle<graph::Buffer>) -> CountsSlot {
+    let slot = CountsSlot::default();
+    let filled = Arc::clone(&slot);
+    let mut pass = graph.pass("shadow counts", PassKind::Transfer);
+    pass.read(&records, Access::TransferSource).side_effect();
+    pass.record(Box::new(move |recorder, resources| {
+        let copy = recorder.read_back_buffer(resources.buffer(&records)?)?;
+        *filled.lock().unwrap_or_else(PoisonError::into_inner) = Some(copy);
+        Ok(())
+    }));
+    slot
+}
+
+/// The sum of what was read back, once the frame is done.
+pub fn counts(slots: &[CountsSlot]) -> Outcome<Counts> {
+    let mut records: Vec<[u32; 2]> = Vec::new();
+    for slot in slots {
+        if let Some(copy) = slot.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            records.extend(copy.read::<[u32; 2]>().map_err(Failure::work)?);
+        }
+    }
+    Ok(Counts::of(&records))
+}
