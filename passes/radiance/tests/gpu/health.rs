@@ -102,7 +102,11 @@ fn a_receiver_past_the_budget_names_the_limit_that_fits() {
         |settings| Receiver::new(context, settings, &mesh.tree, &mesh.positions, &mesh.whole()).map(drop);
     let refused = make(settings).unwrap_err();
     let RadianceError::Budget { size, left, mend } = &refused else { panic!("{refused}") };
-    assert!(*size > 120_000 && *left == 120_000 && mend == "a limit of 255 samples would fit", "{refused}");
-    let refinement = Settings { limit: 255, ..settings.refinement };
-    make(PassSettings { refinement, ..settings }).unwrap();
+    assert!(*size > 120_000 && *left == 120_000, "{refused}");
+    let nodes = mesh.tree.nodes().len();
+    let beside = size - settings.sample_bytes(nodes);
+    let next = settings.next_that_fits(nodes, left - beside).unwrap();
+    assert!(next.refinement.limit >= 64 && !next.gradients, "{next:?}");
+    assert_eq!(*mend, format!("a limit of {} samples would fit", next.refinement.limit));
+    make(next).unwrap();
 }
