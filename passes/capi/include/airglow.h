@@ -378,6 +378,31 @@ typedef uint32_t AirglowLightKind;
 #endif // __cplusplus
 
 /**
+ * How a texture holds its lobes.
+ */
+enum AirglowLobeStorage
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * `VK_FORMAT_R16G16B16A16_SFLOAT`.
+   */
+  AIRGLOW_LOBE_STORAGE_F16 = 0,
+  /**
+   * `VK_FORMAT_R8G8B8A8_SNORM`: half the bytes, for matt materials.
+   */
+  AIRGLOW_LOBE_STORAGE_SNORM8 = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowLobeStorage AirglowLobeStorage;
+#else
+typedef uint32_t AirglowLobeStorage;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * Who touches a piece of memory.
  */
 enum AirglowLocation
@@ -478,6 +503,64 @@ enum AirglowNeedKind
 typedef enum AirglowNeedKind AirglowNeedKind;
 #else
 typedef uint32_t AirglowNeedKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What a texel of a normal map holds.
+ */
+enum AirglowNormalFormat
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Three floats: a vector of any length.
+   */
+  AIRGLOW_NORMAL_FORMAT_FLOAT3 = 0,
+  /**
+   * Two floats, as BC5 has them: z is what is left of 1.
+   */
+  AIRGLOW_NORMAL_FORMAT_FLOAT2 = 1,
+  /**
+   * Four bytes: 0 is -1, 255 is 1; the fourth is not read.
+   */
+  AIRGLOW_NORMAL_FORMAT_RGBA8 = 2,
+  /**
+   * Four numbers of 16 bits: 0 is -1, 65535 is 1; the fourth is not read.
+   */
+  AIRGLOW_NORMAL_FORMAT_RGBA16 = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowNormalFormat AirglowNormalFormat;
+#else
+typedef uint32_t AirglowNormalFormat;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What a step of a build uses; all are the library's own.
+ */
+enum AirglowNormalsResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The texture of lobes.
+   */
+  AIRGLOW_NORMALS_RESOURCE_TEXTURE = 0,
+  /**
+   * A buffer; the index counts them, the name says which.
+   */
+  AIRGLOW_NORMALS_RESOURCE_OWN = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowNormalsResource AirglowNormalsResource;
+#else
+typedef uint32_t AirglowNormalsResource;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -651,6 +734,40 @@ typedef uint32_t AirglowRelightResource;
 #endif // __cplusplus
 
 /**
+ * What the pass uses; all are buffers of the host's.
+ */
+enum AirglowShadowResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Positions of the vertices in object space, three floats each, tightly packed.
+   */
+  AIRGLOW_SHADOW_RESOURCE_POSITIONS = 0,
+  /**
+   * Their normals, three floats each, of any length but 0; with `normals` in the settings.
+   */
+  AIRGLOW_SHADOW_RESOURCE_NORMALS = 1,
+  /**
+   * Written: `order^2` floats a vertex, as relighting takes dynamic visibility
+   * (`AIRGLOW_RELIGHT_RESOURCE_VISIBILITY`).
+   */
+  AIRGLOW_SHADOW_RESOURCE_VISIBILITY = 2,
+  /**
+   * Written: two integers a cluster, for `airglow_shadow_counts`.
+   */
+  AIRGLOW_SHADOW_RESOURCE_RECORDS = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowShadowResource AirglowShadowResource;
+#else
+typedef uint32_t AirglowShadowResource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * How the vectors of a mesh are stored on the device.
  */
 enum AirglowStorage
@@ -692,6 +809,16 @@ typedef struct AirglowFog AirglowFog;
 typedef struct AirglowFogBackground AirglowFogBackground;
 
 /**
+ * A normal map and its texture of lobes. Any thread may use it.
+ */
+typedef struct AirglowNormalMap AirglowNormalMap;
+
+/**
+ * What builds textures of lobes: its kernels for one context and one choice of settings. Any thread may use it.
+ */
+typedef struct AirglowNormals AirglowNormals;
+
+/**
  * A frame of a pass, ready to be recorded, and again in later frames: a pass has functions that change it in between.
  * One thread at a time. It may outlive its pass.
  */
@@ -707,6 +834,16 @@ typedef struct AirglowRelight AirglowRelight;
  * (`airglow_relight_require`). One thread at a time.
  */
 typedef struct AirglowRequirements AirglowRequirements;
+
+/**
+ * The shadow pass: its kernel and tables for one context and one choice of settings. Any thread may use it.
+ */
+typedef struct AirglowShadow AirglowShadow;
+
+/**
+ * The vertices of a mesh, put into clusters once. Any thread may use them.
+ */
+typedef struct AirglowShadowReceivers AirglowShadowReceivers;
 
 /**
  * Triangles that block light, from both sides, beside those of the mesh itself. Elements of arrays never grow.
@@ -1429,6 +1566,136 @@ typedef struct AirglowFogCounts {
 } AirglowFogCounts;
 
 /**
+ * How textures of lobes are made. Zero is the default of every field.
+ */
+typedef struct AirglowNormalsSettings {
+  /**
+   * `sizeof(AirglowNormalsSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Lobes of a texel: 1, 2, 4 or 6. 0 is 4.
+   */
+  uint32_t lobes;
+  /**
+   * Steps of fitting, to 32. 0 is 20.
+   */
+  uint32_t iterations;
+  /**
+   * An `AirglowLobeStorage`.
+   */
+  uint32_t storage;
+  /**
+   * The sharpest lobe while fitting, 1 to 1e8. 0 is 1000.
+   */
+  double sharpest;
+  /**
+   * Bytes that the texture of a map may take; what takes more is refused. 0 is 16 bytes a texel of the map.
+   */
+  uint64_t budget;
+} AirglowNormalsSettings;
+
+/**
+ * A normal map in tangent space, z away from the surface.
+ */
+typedef struct AirglowNormalMapInfo {
+  /**
+   * `sizeof(AirglowNormalMapInfo)`.
+   */
+  uint32_t struct_size;
+  /**
+   * An `AirglowNormalFormat`.
+   */
+  uint32_t format;
+  /**
+   * Texels of a row.
+   */
+  uint32_t width;
+  /**
+   * Rows.
+   */
+  uint32_t height;
+  /**
+   * Its texels, row by row, tightly packed. A texel without direction becomes +Z and is counted.
+   */
+  const void *texels;
+  /**
+   * Bytes of them.
+   */
+  size_t texel_bytes;
+  /**
+   * Path of a file that `airglow_normal_map_store` wrote, UTF-8: if it holds the texture of this very map with these
+   * settings, that is copied in one step; whatever else is there is left alone. Null for none.
+   */
+  const char *cache;
+} AirglowNormalMapInfo;
+
+/**
+ * How far the build of a map is.
+ */
+typedef struct AirglowNormalMapProgress {
+  /**
+   * Texels of the steps that were prepared.
+   */
+  uint64_t done;
+  /**
+   * Texels of all steps.
+   */
+  uint64_t total;
+  /**
+   * Texels of the map that had no direction.
+   */
+  uint64_t repaired;
+  /**
+   * 1: the texture comes from the file that was named.
+   */
+  uint32_t cached;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowNormalMapProgress;
+
+/**
+ * The texture of a map: array layer j holds lobe j of every texel, `(weight * mean normal, weight)`; mip m is level m + 1
+ * of the map. To be sampled with linear filters, after its last step, in `VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL`.
+ */
+typedef struct AirglowLobeTexture {
+  /**
+   * The `VkImage`, which lives as long as the map; 0 for a map of one texel, whose normal is all that there is.
+   */
+  uint64_t image;
+  /**
+   * Bytes of its texels.
+   */
+  uint64_t bytes;
+  /**
+   * Its `VkFormat`.
+   */
+  uint32_t format;
+  /**
+   * Its `VkImageUsageFlags`.
+   */
+  uint32_t usage;
+  /**
+   * Texels of a row.
+   */
+  uint32_t width;
+  /**
+   * Rows.
+   */
+  uint32_t height;
+  /**
+   * Mips.
+   */
+  uint32_t mips;
+  /**
+   * Array layers: lobes.
+   */
+  uint32_t layers;
+} AirglowLobeTexture;
+
+/**
  * One use of one resource by one step. Elements of arrays never grow; names live as long as the prepared frame.
  */
 typedef struct AirglowAccess {
@@ -1602,7 +1869,41 @@ typedef struct AirglowRelightSettings {
    * 1: instances of meshes without vectors may bring the normals of their vertices, for colours.
    */
   uint32_t normals;
+  /**
+   * 1: texels of environments that are not finite or negative are counted (`airglow_relight_health_latest`).
+   */
+  uint32_t health;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
 } AirglowRelightSettings;
+
+/**
+ * Bad texels of a frame, counted where an environment was projected in it; a component that is not finite counts as black.
+ */
+typedef struct AirglowRelightHealth {
+  /**
+   * The context's frame that was counted.
+   */
+  uint64_t frame;
+  /**
+   * 1: a frame was counted, and the device is done with it. 0: the other fields say nothing.
+   */
+  uint32_t counted;
+  /**
+   * Texels with a component that is not finite.
+   */
+  uint32_t not_finite;
+  /**
+   * Other texels with a negative component.
+   */
+  uint32_t negative;
+  /**
+   * Not used.
+   */
+  uint32_t reserved;
+} AirglowRelightHealth;
 
 /**
  * One appearance of a mesh. Elements of arrays never grow.
@@ -1765,6 +2066,77 @@ typedef struct AirglowPhysicalDevice {
    */
   uint64_t physical_device;
 } AirglowPhysicalDevice;
+
+/**
+ * What shadows are prepared for. Zero is the default of every field.
+ */
+typedef struct AirglowShadowSettings {
+  /**
+   * `sizeof(AirglowShadowSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Bands, 3 to 6: that of the relighting it goes into. 0 is 4.
+   */
+  uint32_t order;
+  /**
+   * 1: receivers bring normals, and what lies below their tangent planes is left out.
+   */
+  uint32_t normals;
+  /**
+   * 1: results stay as they come, and are not made ones that a visibility can have.
+   */
+  uint32_t unclamped;
+  /**
+   * Share of a half space below which a sphere is left out of a whole cluster, to 1. 0 is 1e-5, below 0 nothing is left
+   * out.
+   */
+  double reach;
+  /**
+   * Deringing: band l is divided by `1 + window l^2 (l + 1)^2`; 0 to 1.
+   */
+  double window;
+  /**
+   * Smallest eigenvalue over the largest before the logarithm, to 0.5. 0 is 0.02.
+   */
+  double clip;
+} AirglowShadowSettings;
+
+/**
+ * A blocker. Elements of arrays never grow.
+ */
+typedef struct AirglowSphere {
+  /**
+   * Its centre, in the host's world.
+   */
+  double center[3];
+  /**
+   * Its radius; a sphere of radius 0 blocks nothing.
+   */
+  double radius;
+} AirglowSphere;
+
+/**
+ * What the pass did in a frame.
+ */
+typedef struct AirglowShadowCounts {
+  /**
+   * Clusters of up to 64 vertices.
+   */
+  uint64_t clusters;
+  /**
+   * Clusters out of reach of every sphere.
+   */
+  uint64_t open;
+  /**
+   * Spheres, summed over clusters.
+   */
+  uint64_t spheres;
+  /**
+   * Vertices whose result was none that a visibility can have.
+   */
+  uint64_t clamped;
+} AirglowShadowCounts;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1993,6 +2365,116 @@ AirglowStatus airglow_fog_set(const struct AirglowPrepared *prepared,
                               struct AirglowError *error);
 
 /**
+ * Adds what the pass asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_normals_require(struct AirglowRequirements *requirements,
+                                      const struct AirglowNormalsSettings *settings,
+                                      struct AirglowError *error);
+
+/**
+ * Makes the pass: its kernels.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `normals` may be written.
+ */
+AirglowStatus airglow_normals_new(const struct AirglowContext *context,
+                                  const struct AirglowNormalsSettings *settings,
+                                  struct AirglowNormals **normals,
+                                  struct AirglowError *error);
+
+/**
+ * Drops the pass; maps that were made stay usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_normals_drop(struct AirglowNormals *normals);
+
+/**
+ * Makes a map: the memory of its build and its texture; nothing is recorded.
+ *
+ * The caller promises:
+ * `info` points at as many bytes as it says, its texels are as many bytes as it says, its path is null or ends in a nul;
+ * `map` may be written.
+ */
+AirglowStatus airglow_normal_map_new(const struct AirglowNormals *normals,
+                                     const struct AirglowNormalMapInfo *info,
+                                     struct AirglowNormalMap **map,
+                                     struct AirglowError *error);
+
+/**
+ * Says how far the build of a map is.
+ *
+ * The caller promises:
+ * `progress` may be written.
+ */
+AirglowStatus airglow_normal_map_progress(const struct AirglowNormalMap *map,
+                                          struct AirglowNormalMapProgress *progress,
+                                          struct AirglowError *error);
+
+/**
+ * Says what the texture of a map is; its contents are there when the last step is done.
+ *
+ * The caller promises:
+ * `texture` may be written.
+ */
+AirglowStatus airglow_normal_map_texture(const struct AirglowNormalMap *map,
+                                         struct AirglowLobeTexture *texture,
+                                         struct AirglowError *error);
+
+/**
+ * Records copies of a texture's bytes for `airglow_normal_map_store`, after its last step.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`; all steps were recorded before, in this command buffer or in one submitted earlier.
+ */
+AirglowStatus airglow_normal_map_read_back(const struct AirglowNormalMap *map,
+                                           uint64_t command_buffer,
+                                           struct AirglowError *error);
+
+/**
+ * Writes the texture of a map to a file, whole or not at all, for the `cache` of `AirglowNormalMapInfo`.
+ *
+ * The caller promises:
+ * `path` ends in a nul; the device has finished what `airglow_normal_map_read_back` recorded.
+ */
+AirglowStatus airglow_normal_map_store(const struct AirglowNormalMap *map,
+                                       const char *path,
+                                       struct AirglowError *error);
+
+/**
+ * Frees what only the build of a map needs, at once or frames later, as the device is done with it; the texture stays.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_normal_map_finish(const struct AirglowNormalMap *map, struct AirglowError *error);
+
+/**
+ * Drops a map and its texture. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again; the host has no view of the texture any more.
+ */
+void airglow_normal_map_drop(struct AirglowNormalMap *map);
+
+/**
+ * Prepares the next steps of a map's build, at most `most`; they count as taken. `*prepared` gets null when none are left.
+ * Steps work on what earlier ones wrote: record each once, in order, in one frame or in many. Nothing is bound, and
+ * the host makes no barrier: after the last step the texture is ready for its fragment shaders.
+ *
+ * The caller promises:
+ * `prepared` may be written.
+ */
+AirglowStatus airglow_normal_map_prepare(const struct AirglowNormalMap *map,
+                                         size_t most,
+                                         struct AirglowPrepared **prepared,
+                                         struct AirglowError *error);
+
+/**
  * Lists every use of every resource, step by step. Before recording, the host makes its own resources, and the scratch,
  * available to the first use listed of each, in that layout; afterwards it waits for the last. Between the steps the
  * library stands its own barriers; layouts of scratch images are all its own. `*count` holds the size of
@@ -2145,6 +2627,37 @@ AirglowStatus airglow_relight_set_environment(const struct AirglowRelight *relig
                                               uint32_t height,
                                               const float *texels,
                                               struct AirglowError *error);
+
+/**
+ * Sets the counts to 0, before the recordings of a frame; for settings with `health`.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`.
+ */
+AirglowStatus airglow_relight_health_clear(const struct AirglowRelight *relight,
+                                           uint64_t command_buffer,
+                                           struct AirglowError *error);
+
+/**
+ * Copies the counts for `airglow_relight_health_latest`, after the recordings of a frame, once in it.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`.
+ */
+AirglowStatus airglow_relight_health_collect(const struct AirglowRelight *relight,
+                                             uint64_t command_buffer,
+                                             struct AirglowError *error);
+
+/**
+ * Says the counts of the newest frame that is done, without waiting: one that was collected `frames_in_flight` frames ago
+ * or earlier.
+ *
+ * The caller promises:
+ * `health` may be written.
+ */
+AirglowStatus airglow_relight_health_latest(const struct AirglowRelight *relight,
+                                            struct AirglowRelightHealth *health,
+                                            struct AirglowError *error);
 
 /**
  * Writes the plan that the library's graph makes of a frame: steps, barriers, lifetimes and bytes of what they use, and
@@ -2303,6 +2816,107 @@ AirglowStatus airglow_requirements_patch(struct AirglowRequirements *requirement
                                          void **p_next,
                                          void *enabled_features,
                                          struct AirglowError *error);
+
+/**
+ * Adds what the pass asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_shadow_require(struct AirglowRequirements *requirements,
+                                     const struct AirglowShadowSettings *settings,
+                                     struct AirglowError *error);
+
+/**
+ * Makes the pass: its kernel and tables.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `shadow` may be written.
+ */
+AirglowStatus airglow_shadow_new(const struct AirglowContext *context,
+                                 const struct AirglowShadowSettings *settings,
+                                 struct AirglowShadow **shadow,
+                                 struct AirglowError *error);
+
+/**
+ * Drops the pass; what was made and prepared stays usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_shadow_drop(struct AirglowShadow *shadow);
+
+/**
+ * Puts the vertices of a mesh into clusters of 64, by their positions in object space; a mesh that is skinned keeps them.
+ * `name`, which may be null, is used in the memory report.
+ *
+ * The caller promises:
+ * `positions` has `3 * vertex_count` values; `name` is null or ends in a nul; `receivers` may be written.
+ */
+AirglowStatus airglow_shadow_receivers_new(const struct AirglowShadow *shadow,
+                                           const char *name,
+                                           const float *positions,
+                                           size_t vertex_count,
+                                           struct AirglowShadowReceivers **receivers,
+                                           struct AirglowError *error);
+
+/**
+ * Drops receivers; what was prepared with them stays usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_shadow_receivers_drop(struct AirglowShadowReceivers *receivers);
+
+/**
+ * Prepares the visibility of the vertices of one instance; before spheres are set (`airglow_shadow_set`) nothing blocks.
+ *
+ * The caller promises:
+ * `prepared` may be written.
+ */
+AirglowStatus airglow_shadow_prepare(const struct AirglowShadow *shadow,
+                                     const struct AirglowShadowReceivers *receivers,
+                                     struct AirglowPrepared **prepared,
+                                     struct AirglowError *error);
+
+/**
+ * Sets the spheres of a prepared frame, which count from the next recording on. `receiver_from_world`, column-major, takes
+ * them to the object space of the vertices: a rotation or mirroring, a uniform scale, a translation; null is the identity.
+ * `*blocks`, which may be null, gets 1 if one has a radius, else 0: then the recording may be left out together with the
+ * visibility of the instance (`airglow_relight_show`). On an error the old ones stay.
+ *
+ * The caller promises:
+ * `spheres` has `sphere_count` elements; `receiver_from_world` is null or has 16 values; `blocks` is null or may be written.
+ */
+AirglowStatus airglow_shadow_set(const struct AirglowPrepared *prepared,
+                                 const struct AirglowSphere *spheres,
+                                 size_t sphere_count,
+                                 const double *receiver_from_world,
+                                 uint32_t *blocks,
+                                 struct AirglowError *error);
+
+/**
+ * Sums the records of a frame as the host read them back.
+ *
+ * The caller promises:
+ * `records` has two values for each of `cluster_count` clusters; `counts` may be written.
+ */
+AirglowStatus airglow_shadow_counts(const uint32_t *records,
+                                    size_t cluster_count,
+                                    struct AirglowShadowCounts *counts,
+                                    struct AirglowError *error);
+
+/**
+ * Writes the plan that the library's graph makes of a prepared frame, with the spheres that are set now. The format is an
+ * `AirglowPlanFormat`.
+ *
+ * The caller promises:
+ * `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_shadow_plan(const struct AirglowPrepared *prepared,
+                                  uint32_t format,
+                                  struct AirglowText *text,
+                                  struct AirglowError *error);
 
 /**
  * Refuses what no host can mean, with the reason; passes refuse it, too.

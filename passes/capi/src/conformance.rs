@@ -30,8 +30,12 @@ pub(crate) struct Checks {
 const ROOMS: &[Checks] = &[
     #[cfg(feature = "fog")]
     crate::fog::conformance::CHECKS,
+    #[cfg(feature = "normals")]
+    crate::normals::conformance::CHECKS,
     #[cfg(feature = "relight")]
     crate::relight::conformance::CHECKS,
+    #[cfg(feature = "shadow")]
+    crate::shadow::conformance::CHECKS,
 ];
 
 /// What came of a check; `failure` is null where it passed, and else says what is wrong. Both texts are UTF-8 and live
@@ -195,6 +199,11 @@ macro_rules! attempt {
     }};
 }
 pub(crate) use attempt;
+
+/// A square of ground, for passes that light vertices.
+pub(crate) fn ground() -> Vec<[f32; 3]> {
+    (0..300).map(|i| [(i % 20) as f32, 0.0, (i / 20) as f32]).collect()
+}
 
 /// A function of Vulkan as the header has it.
 pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {

@@ -144,6 +144,15 @@ pub(crate) fn one_of<T: Copy>(name: &str, value: u32, values: &[T]) -> Result<T,
     values.get(value as usize).copied().ok_or_else(|| Failure::argument(name, &problem()))
 }
 
+/// A number whose 0 stands for a default and whose negative values for 0; what is none stays, to be refused.
+pub(crate) fn or_default(value: f64, default: f64) -> f64 {
+    match value {
+        0.0 => default,
+        below if below < 0.0 => 0.0,
+        other => other,
+    }
+}
+
 /// A text of the caller; null is `default`.
 ///
 /// # Safety

@@ -16,6 +16,8 @@ pub mod context;
 pub mod fog;
 mod input;
 pub mod needs;
+#[cfg(feature = "normals")]
+pub mod normals;
 mod pass;
 pub mod physical;
 pub mod plan;
@@ -23,6 +25,8 @@ pub mod prepared;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod requirements;
+#[cfg(feature = "shadow")]
+pub mod shadow;
 pub mod status;
 #[cfg(test)]
 mod testing;

@@ -140,6 +140,10 @@ impl AirglowPrepared {
         Self { context: Arc::clone(context), uses, scratch: Vec::new(), frame }
     }
 
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
+    }
+
     /// The frame of a pass; that of another is refused.
     pub(crate) fn of<F: Frame>(&self) -> Result<&F, Failure> {
         self.frame.frame().downcast_ref().ok_or_else(|| {

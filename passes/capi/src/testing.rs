@@ -5,6 +5,7 @@ use airglow_tests::conformance::HostDevice;
 use airglow_tests::device::{open, stated};
 use airglow_tests::heap::Counting;
 
+use crate::input::Versioned;
 use crate::text::AirglowText;
 
 #[global_allocator]
@@ -31,6 +32,17 @@ macro_rules! refused {
     }};
 }
 pub(crate) use refused;
+
+/// Hands `refused` the structure with sizes that no version has; the message says which.
+pub(crate) fn sizes_refused<T: Versioned>(good: &T, mut refused: impl FnMut(*const T) -> String) {
+    for stated in [0, 4, size_of::<T>() as u32 - 1, 1 << 20, u32::MAX] {
+        let mut wrong = *good;
+        // SAFETY: its size comes first.
+        unsafe { (&raw mut wrong).cast::<u32>().write(stated) };
+        let said = refused(&raw const wrong);
+        assert!(said.contains(&format!("struct_size is {stated}")), "{said}");
+    }
+}
 
 /// Runs `test` with a host's device that has what is asked; validation must stay silent.
 pub(crate) fn with_host(asked: &Requirements, test: impl FnOnce(&HostDevice<'_>)) {

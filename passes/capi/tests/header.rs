@@ -43,3 +43,20 @@ fn its_structures_measure_what_rust_s_do() {
     ];
     assert_sizes("sizes.c", &sizes);
 }
+
+#[cfg(feature = "normals")]
+#[test]
+fn so_do_those_of_normals() {
+    use airglow_capi::normals::{info::*, map::*, settings::*};
+    let sizes =
+        sizes![AirglowLobeTexture, AirglowNormalMapInfo, AirglowNormalMapProgress, AirglowNormalsSettings,];
+    assert_sizes("normals_sizes.c", &sizes);
+}
+
+#[cfg(feature = "shadow")]
+#[test]
+fn so_do_those_of_shadow() {
+    use airglow_capi::shadow::{prepared::*, settings::*};
+    let sizes = sizes![AirglowShadowCounts, AirglowShadowSettings, AirglowSphere];
+    assert_sizes("shadow_sizes.c", &sizes);
+}

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout, ImageViewType};
+use airglow_gpu::ash::vk::{BufferUsageFlags, ImageViewType};
 use airglow_gpu::{
     Buffer, ComputePipeline, Context, GpuError, Label, Location, Readback, Recorder, ViewDesc,
 };
-use airglow_graph::{Access, BufferDesc, ImageDesc, State};
+use airglow_graph::{Access, BufferDesc, ImageDesc};
 use bytemuck::Pod;
 
 use crate::NormalsError;
@@ -203,23 +203,8 @@ impl Bench<'_> {
 
     /// Takes those steps of a build, each in a frame of its own.
     fn steps(&self, build: &mut Build, wanted: impl Fn(&Stage) -> bool) -> Result<(), NormalsError> {
-        let texture = build.texture().cloned();
-        for stage in build.take(usize::MAX).iter().filter(|stage| wanted(stage)) {
-            let copies = stage.accesses().iter().any(|(resource, _)| *resource == Resource::Texture);
-            let image = texture.as_ref().filter(|_| copies).map(|texture| &texture.image);
-            self.frame(&mut |recorder| {
-                let storage = Access::ComputeStorageReadWrite;
-                recorder.memory_barrier(storage, if copies { Access::TransferSource } else { storage })?;
-                if let Some(image) = image {
-                    let fresh = State::idle(ImageLayout::UNDEFINED);
-                    recorder.transition(image, fresh, Access::TransferDestination)?;
-                }
-                stage.record(recorder)?;
-                let Some(image) = image else { return Ok(()) };
-                recorder.transition(image, Access::TransferDestination, Access::FragmentSampled)
-            })?;
-        }
-        Ok(())
+        let mut steps = build.take(usize::MAX).iter().filter(|stage| wanted(stage));
+        steps.try_for_each(|stage| self.frame(&mut |recorder| stage.record_with_barriers(recorder)))
     }
 
     /// One frame, whose host must have recorded it.

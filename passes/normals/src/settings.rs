@@ -28,7 +28,11 @@ impl Settings {
         self.budget.unwrap_or(DEFAULT_SHARE * SOURCE_BYTES * texels as u64)
     }
 
-    pub(crate) fn check(&self) -> Result<(), NormalsError> {
+    /// Refuses what is out of range.
+    ///
+    /// # Errors
+    /// [`NormalsError::Range`].
+    pub fn check(&self) -> Result<(), NormalsError> {
         self.fit.check()
     }
 }

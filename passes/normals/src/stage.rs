@@ -1,10 +1,10 @@
 //! Steps of a build: what each uses, for whoever makes the barriers, and how it is recorded.
 
-use airglow_gpu::ash::vk::ImageViewType;
+use airglow_gpu::ash::vk::{ImageLayout, ImageViewType};
 use airglow_gpu::{
     Binding, Buffer, BufferSlice, ComputePipeline, GpuError, Image, Look, Recorder, Tally, ViewDesc,
 };
-use airglow_graph::Access;
+use airglow_graph::{Access, State};
 
 use crate::kernels::{AlignConstants, FitConstants, PackConstants};
 
@@ -66,6 +66,25 @@ impl Stage {
     #[must_use]
     pub fn texels(&self) -> u64 {
         self.texels
+    }
+
+    /// Records it between barriers for all that the build works on, for a host that makes none: what steps before it wrote,
+    /// in this command buffer or in one that was submitted to the queue, is waited for, and the texture is left to be
+    /// sampled by fragment shaders ([`Access::FragmentSampled`]).
+    ///
+    /// # Errors
+    /// As [`Stage::record`].
+    pub fn record_with_barriers(&self, recorder: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let written = Access::ComputeStorageReadWrite;
+        let Work::Copy { texture, .. } = &self.work else {
+            recorder.memory_barrier(written, written)?;
+            return self.record(recorder);
+        };
+        recorder.memory_barrier(written, Access::TransferSource)?;
+        let fresh = State::idle(ImageLayout::UNDEFINED);
+        recorder.transition(texture, fresh, Access::TransferDestination)?;
+        self.record(recorder)?;
+        recorder.transition(texture, Access::TransferDestination, Access::FragmentSampled)
     }
 
     /// Records it, without barriers. Command-buffer state changed: as [`Recorder`] says.

@@ -5,7 +5,7 @@ use std::mem::zeroed;
 use std::ptr::{null, null_mut};
 
 use airglow_conformance::{Declared, Given, HostDevice, HostResource, Outputs, Refusal, Room, conform_on};
-use airglow_fog::{ACCESSES, Camera, Fog, Frame, Light, Medium, Phase, Settings, View};
+use airglow_fog::{ACCESSES, Camera, Environment, Fog, Frame, Light, Medium, Phase, Settings, View};
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
 use airglow_gpu::{Context, Options, Recorder, Requirements};
 use airglow_graph::{Access, ImageDesc};
@@ -35,8 +35,11 @@ const EDGES: [f64; 4] = [-0.8, 0.8, -0.45, 0.45];
 const EXTINCTION: [f64; 3] = [0.065, 0.06, 0.055];
 const G: f64 = 0.4;
 
-/// The view as Rust says it.
-fn view() -> View {
+/// How far an environment is, and its radiance.
+const ENVIRONMENT: (f64, [[f64; 3]; 9]) = (80.0, [[0.9, 0.5, 0.3]; 9]);
+
+/// The view as Rust says it, with an environment or without.
+fn view(environment: bool) -> View {
     let camera = Camera {
         position: DVec3::from_array(EYE),
         right: DVec3::X,
@@ -47,7 +50,9 @@ fn view() -> View {
     let phase = Phase::HenyeyGreenstein { g: G };
     let medium = Medium { extinction: EXTINCTION, albedo: [0.9; 3], phase, thinning: None };
     let lamp = Light { radius: 0.1, ..Light::point(DVec3::from_array(LAMP.0), LAMP.1) };
-    View { world: World::default(), camera, medium, lights: vec![lamp], environment: None }
+    let (distance, radiance) = ENVIRONMENT;
+    let environment = environment.then_some(Environment { distance, radiance });
+    View { world: World::default(), camera, medium, lights: vec![lamp], environment }
 }
 
 /// The lamp as C says it.
@@ -79,16 +84,18 @@ pub(crate) fn view_in_c(lights: &[AirglowFogLight]) -> AirglowFogView {
     }
 }
 
-/// Settings that are all default.
-pub(crate) fn settings() -> AirglowFogSettings {
+/// Settings that are all default but for the environment.
+pub(crate) fn settings(environment: bool) -> AirglowFogSettings {
     let struct_size = size_of::<AirglowFogSettings>() as u32;
     // SAFETY: zero bytes are valid settings.
-    AirglowFogSettings { struct_size, ..unsafe { zeroed() } }
+    AirglowFogSettings { struct_size, environment: environment.into(), ..unsafe { zeroed() } }
 }
 
 /// The pass made by the exported functions.
-pub(crate) fn in_c(host: &HostDevice<'_>) -> Result<(ThroughC, *mut AirglowFog), Refusal> {
-    let settings = settings();
+pub(crate) fn in_c(
+    host: &HostDevice<'_>,
+    settings: AirglowFogSettings,
+) -> Result<(ThroughC, *mut AirglowFog), Refusal> {
     let settings = &raw const settings;
     let mut through_c = ThroughC::adopt(host, |asked| attempt!(airglow_fog_require, asked, settings))?;
     let context = through_c.context;
@@ -115,9 +122,9 @@ pub(crate) struct Both {
 }
 
 impl Both {
-    pub(crate) fn new(context: &Context, host: &HostDevice<'_>) -> Result<Self, Refusal> {
-        let fog = Fog::new(context, Settings::default())?;
-        let (through_c, in_c) = in_c(host)?;
+    pub(crate) fn new(context: &Context, host: &HostDevice<'_>, environment: bool) -> Result<Self, Refusal> {
+        let fog = Fog::new(context, Settings { environment, ..Settings::default() })?;
+        let (through_c, in_c) = in_c(host, settings(environment))?;
         Ok(Self { fog, through_c, in_c, prepared: null_mut() })
     }
 }
@@ -154,12 +161,20 @@ impl Room for Both {
 
     fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
         let (surface, depth, target) = (to.image(0)?, to.image(1)?, Some(to.image(2)?));
-        self.fog.add(to.graph, &Frame { size: SIZE, surface, depth, target, view: view() })?;
+        self.fog.add(
+            to.graph,
+            &Frame { size: SIZE, surface, depth, target, view: view(self.fog.settings().environment) },
+        )?;
         Ok(())
     }
 
     fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
-        self.prepared = prepare(&mut self.through_c, self.in_c, &view_in_c(&[lamp()]))?;
+        let (lamps, (environment_distance, radiance)) = ([lamp()], ENVIRONMENT);
+        let mut view = view_in_c(&lamps);
+        if self.fog.settings().environment {
+            view = AirglowFogView { environment: radiance.as_ptr().cast(), environment_distance, ..view };
+        }
+        self.prepared = prepare(&mut self.through_c, self.in_c, &view)?;
         ends(self.prepared, &RESOURCES)
     }
 
@@ -170,20 +185,32 @@ impl Room for Both {
 
 /// What the kit holds the pass to.
 pub(crate) const CHECKS: Checks = Checks {
-    requirements: || Ok(Fog::requirements(&Settings::default())),
-    checks: &[(c"fog: a lamp in a medium", |host| {
-        let asked = Fog::requirements(&Settings::default());
-        // SAFETY: whoever runs the kit vouches for the device and its queue.
-        check_lit(&unsafe { conform_on(host, &asked, &Options::default(), Both::new)? })
-    })],
+    requirements: || {
+        let background = super::background::conformance::requirements();
+        Ok(Fog::requirements(&Settings::default()).and(&background))
+    },
+    checks: &[
+        (c"fog: a lamp in a medium", |host| check_lit(&outputs(host, false)?, true)),
+        (c"fog: an environment behind it", |host| check_lit(&outputs(host, true)?, false)),
+        (c"fog: an environment as it is seen through it", super::background::conformance::check),
+    ],
 };
 
-/// Every pixel was written, and where there is no surface there is airlight of the lamp's colour.
-pub(crate) fn check_lit(outputs: &Outputs) -> Result<(), Refusal> {
+fn outputs(host: &HostDevice<'_>, environment: bool) -> Result<Outputs, Refusal> {
+    let asked = Fog::requirements(&Settings::default());
+    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, environment);
+    // SAFETY: whoever runs the kit vouches for the device and its queue.
+    unsafe { conform_on(host, &asked, &Options::default(), make) }
+}
+
+/// Every pixel was written, and where there is no surface there is, if the air is all that is `warm`, airlight of the lamp's
+/// colour.
+pub(crate) fn check_lit(outputs: &Outputs, warm: bool) -> Result<(), Refusal> {
     let bytes = outputs.iter().take(1).flat_map(|bytes| bytes.chunks_exact(4));
     let values: Vec<f32> = bytes.map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     let texels = values.chunks_exact(4).enumerate();
-    let lit = texels.filter(|(i, t)| t[..3].iter().all(|v| *v > 0.0) && (*i >= PIXELS / 3 || t[0] > t[2]));
+    let near = |i: usize| i >= PIXELS / 3 || !warm;
+    let lit = texels.filter(|(i, t)| t[..3].iter().all(|v| *v > 0.0) && (near(*i) || t[0] > t[2]));
     match lit.count() {
         PIXELS => Ok(()),
         lit => Err(format!("{lit} of {PIXELS} pixels are lit as they should be").into()),

@@ -3,7 +3,7 @@
 use airglow_fog::{PhaseKind, Preset, Settings};
 use airglow_gpu::ash::vk;
 
-use crate::input::{Versioned, one_of};
+use crate::input::{Versioned, one_of, or_default};
 use crate::pass;
 use crate::status::Failure;
 
@@ -69,7 +69,7 @@ impl pass::Settings for AirglowFogSettings {
             phase: one_of("phase", self.phase, &[HenyeyGreenstein, Isotropic, Polynomial, Draine])?,
             height: one_of("height", self.height, &[false, true])?,
             environment: one_of("environment", self.environment, &[false, true])?,
-            bound: if self.bound == 0.0 { default.bound } else { self.bound.max(0.0) },
+            bound: or_default(self.bound, default.bound),
         };
         settings.check()?;
         Ok(settings)

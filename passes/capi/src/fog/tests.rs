@@ -7,7 +7,7 @@ use airglow_gpu::ash::vk::{CommandBuffer, Handle};
 use airglow_gpu::open::{FrameLoop, FrameSemaphores};
 use airglow_gpu::{Image, Label, Options};
 use airglow_graph::State;
-use airglow_tests::conformance::{Given, conform_adopting};
+use airglow_tests::conformance::{Given, HostDevice, conform_adopting};
 use airglow_tests::device::{open, stated};
 use airglow_tests::heap::allocations;
 
@@ -21,19 +21,20 @@ use crate::pass::Settings as _;
 use crate::plan::AirglowPlanFormat;
 use crate::prepared::*;
 use crate::status::AirglowStatus;
-use crate::testing::{call, refused, text, with_host};
+use crate::testing::{call, refused, sizes_refused, text, with_host};
 use crate::through_c::binding;
 
 #[test]
 fn rust_and_c_give_the_same_bits_under_validation() {
-    let asked = Fog::requirements(&settings().read().unwrap());
-    check_lit(&conform_adopting(Both::new, &asked, &Options::default())).unwrap();
+    let asked = Fog::requirements(&settings(false).read().unwrap());
+    let make = |context: &Context, host: &HostDevice<'_>| Both::new(context, host, false);
+    check_lit(&conform_adopting(make, &asked, &Options::default()), true).unwrap();
 }
 
 #[test]
 fn what_no_view_is_is_refused_and_changes_nothing() {
-    with_host(&Fog::requirements(&settings().read().unwrap()), |host| {
-        let (mut made, fog) = in_c(host).unwrap();
+    with_host(&Fog::requirements(&settings(false).read().unwrap()), |host| {
+        let (mut made, fog) = in_c(host, settings(false)).unwrap();
         let lamps = [lamp()];
         let good = view_in_c(&lamps);
         let prepared = prepare(&mut made, fog, &good).unwrap();
@@ -61,13 +62,17 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
         other = prepared;
         call!(airglow_fog_prepare, fog, 40, 24, &raw const clear, &raw mut other);
         assert!(other.is_null(), "nothing is left to record");
+        let radiance = [f64::NAN; 27];
+        let poisoned = AirglowFogView { environment: radiance.as_ptr(), ..good };
+        let said = refused!(InvalidArgument, airglow_fog_set, prepared, &raw const poisoned, null_mut());
+        assert!(said.contains("environment") || said.contains("radiance"), "{said}");
         let plan = |view: &AirglowFogView| {
             let format = AirglowPlanFormat::Text as u32;
             text(|text| call!(airglow_fog_plan, fog, 40, 24, &raw const *view, format, text))
         };
         assert!(plan(&clear).contains("the medium has no extinction"), "{}", plan(&clear));
         assert!(plan(&good).contains("fog airlight"), "{}", plan(&good));
-        let chosen = AirglowFogSettings { preset: 2, ..settings() };
+        let chosen = AirglowFogSettings { preset: 2, ..settings(false) };
         let mut none = null_mut();
         let said = refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
         assert!(said.contains("give 0 to 1"), "{said}");
@@ -78,8 +83,8 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
 #[test]
 fn a_lamp_that_enters_allocates_nothing() {
     const WARM_UP: u32 = 10;
-    let open = open(&Fog::requirements(&settings().read().unwrap()));
-    let (mut made, fog) = in_c(&stated(&open, open.device())).unwrap();
+    let open = open(&Fog::requirements(&settings(false).read().unwrap()));
+    let (mut made, fog) = in_c(&stated(&open, open.device()), settings(false)).unwrap();
     // SAFETY: dropped below, when the device is idle.
     let host = unsafe { open.adopt(1) }.unwrap();
     let images: [Image; 3] =
@@ -121,4 +126,43 @@ fn a_lamp_that_enters_allocates_nothing() {
     assert_eq!(counted, 0, "allocations after warm-up");
     drop((made, images, host));
     assert!(open.messages().take().is_empty());
+}
+
+#[test]
+fn what_no_background_is_is_refused_and_named() {
+    use super::background::*;
+    refused!(InvalidArgument, airglow_fog_background_require, null_mut(), null());
+    refused!(InvalidArgument, airglow_fog_background_new, null(), null(), null_mut());
+    refused!(InvalidArgument, airglow_fog_background_prepare, null(), null(), null_mut());
+    refused!(InvalidArgument, airglow_fog_background_set, null(), null());
+    with_host(&conformance::requirements(), |host| {
+        let (made, background, prepared) = conformance::in_c(host).unwrap();
+        let (good, mut other) = (conformance::settings(), null_mut());
+        for wrong in [
+            AirglowFogBackgroundSettings { width: 0, ..good },
+            AirglowFogBackgroundSettings { height: u32::MAX, ..good },
+        ] {
+            let (context, wrong) = (made.context, &raw const wrong);
+            let said = refused!(InvalidArgument, airglow_fog_background_new, context, wrong, &raw mut other);
+            assert!(said.contains("size") && other.is_null(), "{said}");
+        }
+        sizes_refused(&good, |wrong| {
+            refused!(InvalidStruct, airglow_fog_background_new, made.context, wrong, &raw mut other)
+        });
+        let (good, mut frame) = (conformance::view(), null_mut());
+        for (wrong, word) in [
+            (AirglowFogBackgroundView { seen: 2, ..good }, "seen"),
+            (AirglowFogBackgroundView { optical_distance: [-1.0; 3], ..good }, "optical_distance"),
+            (AirglowFogBackgroundView { albedo: [f64::NAN; 3], ..good }, "albedo"),
+        ] {
+            let wrong = &raw const wrong;
+            let said = refused!(InvalidArgument, airglow_fog_background_set, prepared, wrong);
+            assert!(said.contains(word), "{said}");
+            let prepare = airglow_fog_background_prepare;
+            assert_eq!(refused!(InvalidArgument, prepare, background, wrong, &raw mut frame), said);
+        }
+        sizes_refused(&good, |wrong| refused!(InvalidStruct, airglow_fog_background_set, prepared, wrong));
+        // SAFETY: null is nothing.
+        unsafe { airglow_fog_background_drop(null_mut()) };
+    });
 }

@@ -92,12 +92,19 @@ pub(crate) fn in_c(
     host: &HostDevice<'_>,
     settings: &AirglowRelightSettings,
 ) -> Result<(ThroughC, *mut AirglowRelight), Refusal> {
-    let settings: *const _ = settings;
-    let mut through_c = ThroughC::adopt(host, |asked| attempt!(airglow_relight_require, asked, settings))?;
-    let context = through_c.context;
-    let relight = through_c
-        .hold(airglow_relight_drop, |relight| attempt!(airglow_relight_new, context, settings, relight))?;
+    let asked = |asked| attempt!(airglow_relight_require, asked, settings);
+    let mut through_c = ThroughC::adopt(host, asked)?;
+    let relight = made(&mut through_c, settings)?;
     Ok((through_c, relight))
+}
+
+/// The same in a context that is there.
+pub(crate) fn made(
+    through_c: &mut ThroughC,
+    settings: &AirglowRelightSettings,
+) -> Result<*mut AirglowRelight, Refusal> {
+    let context = through_c.context;
+    through_c.hold(airglow_relight_drop, |relight| attempt!(airglow_relight_new, context, settings, relight))
 }
 
 impl Room for Both {

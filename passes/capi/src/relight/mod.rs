@@ -4,6 +4,7 @@
 #[cfg(any(test, feature = "conformance"))]
 pub(crate) mod conformance;
 pub mod frame;
+pub mod health;
 pub mod plan;
 pub mod prepared;
 pub mod resources;

@@ -67,6 +67,10 @@ pub struct AirglowRelightSettings {
     pub visibility: u32,
     /// 1: instances of meshes without vectors may bring the normals of their vertices, for colours.
     pub normals: u32,
+    /// 1: texels of environments that are not finite or negative are counted (`airglow_relight_health_latest`).
+    pub health: u32,
+    /// Not used; 0.
+    pub reserved: u32,
 }
 
 // SAFETY: `#[repr(C)]`, its size first, integers of 4 bytes.
@@ -86,7 +90,7 @@ impl pass::Settings for AirglowRelightSettings {
             light: one_of("light", self.light, &[LightKind::Uniform, LightKind::Vertex])?,
             visibility: one_of("visibility", self.visibility, &[false, true])?,
             normals: one_of("normals", self.normals, &[false, true])?,
-            ..Settings::default()
+            health: one_of("health", self.health, &[false, true])?,
         };
         settings.check()?;
         Ok(settings)

@@ -29,9 +29,14 @@ fn the_kit_passes_an_honest_host_and_names_the_fault_of_another() {
         if name == "shared" {
             continue;
         }
-        for (fault, words) in [("features", "synchronization2"), ("memory", "memory"), ("work", "lit")] {
+        for (fault, words) in [
+            ("features", &["synchronization2"][..]),
+            ("memory", &["memory"]),
+            // What no work fills may differ, too.
+            ("work", &["lit", "differ"]),
+        ] {
             for said in said_of(&program, fault) {
-                assert!(said.contains(words), "{fault}: {said}");
+                assert!(words.iter().any(|word| said.contains(word)), "{fault}: {said}");
             }
         }
     }

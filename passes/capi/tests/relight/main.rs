@@ -7,6 +7,7 @@ mod common;
 use airglow_capi::access::*;
 use airglow_capi::binding::*;
 use airglow_capi::relight::frame::*;
+use airglow_capi::relight::health::*;
 use airglow_capi::relight::prepared::*;
 use airglow_capi::relight::settings::*;
 use common::{ROOM, assert_sizes, build, host, linked, picture};
@@ -21,6 +22,7 @@ fn structures_measure_what_rust_s_do() {
         AirglowBinding,
         AirglowRelightBytes,
         AirglowRelightFrame,
+        AirglowRelightHealth,
         AirglowRelightInstance,
         AirglowRelightSettings,
         AirglowResourceInfo,

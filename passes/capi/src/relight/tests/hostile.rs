@@ -15,6 +15,7 @@ use crate::needs::AirglowNeed;
 use crate::physical::AirglowPhysicalDevice;
 use crate::prepared::*;
 use crate::relight::frame::AirglowRelightFrame;
+use crate::relight::health::*;
 use crate::relight::plan::airglow_relight_plan;
 use crate::relight::prepared::*;
 use crate::relight::settings::{AirglowRelightBytes, AirglowRelightSettings, airglow_relight_bytes};
@@ -52,6 +53,9 @@ fn null_is_refused_everywhere_and_dropping_it_is_nothing() {
     refused!(InvalidArgument, airglow_relight_show, null(), 0, 1, 1);
     refused!(InvalidArgument, airglow_relight_set_lit, null(), 1);
     refused!(InvalidArgument, airglow_relight_turn, null(), null(), null(), 0);
+    refused!(InvalidArgument, airglow_relight_health_clear, null(), 0);
+    refused!(InvalidArgument, airglow_relight_health_collect, null(), 0);
+    refused!(InvalidArgument, airglow_relight_health_latest, null(), null_mut());
     refused!(InvalidArgument, airglow_prepared_accesses, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_prepared_resources, null(), null_mut(), null_mut());
     refused!(InvalidArgument, airglow_relight_ranges, null(), null_mut(), null_mut());

@@ -2,6 +2,7 @@
 
 mod conformance;
 mod frame;
+mod health;
 mod heap;
 mod hostile;
 mod memory;

@@ -1,5 +1,8 @@
 //! An environment as it is seen through fog, for hosts in C and C++.
 
+#[cfg(any(test, feature = "conformance"))]
+pub(crate) mod conformance;
+
 use std::sync::{Arc, Mutex, PoisonError};
 
 use airglow_fog::{Background, Distant, Seen};
