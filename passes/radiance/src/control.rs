@@ -2,18 +2,34 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::gpu::EmitterTriangle;
-use crate::gpu::refinement::DeviceGlow;
-use crate::{Glow, RadianceError, Triangle, check};
+use crate::gpu::{EmitterSphere, EmitterTriangle};
+use crate::{RadianceError, Sphere, Triangle, check, check_spheres};
 
 /// What a receiver is lit by.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lights<'a> {
     /// Triangles that emit or block, in the space of the receiver's positions.
     pub emitters: &'a [Triangle],
+    /// Spheres that emit or block: in closed form where nothing overlaps, else as [`Sphere::triangles`].
+    pub spheres: &'a [Sphere],
     /// Light from far away about the axes of that space, SH RGB, order squared of them, which every vertex gets as well:
     /// its transfer knows what shadows it. Empty for none.
     pub distant: &'a [[f32; 3]],
+}
+
+impl Lights<'_> {
+    /// All emitters as triangles, those that stand for spheres last.
+    #[must_use]
+    pub fn triangles(&self) -> Vec<Triangle> {
+        let spheres = self.spheres.iter().flat_map(Sphere::triangles);
+        self.emitters.iter().copied().chain(spheres).collect()
+    }
+
+    /// Whether anything near gives light.
+    pub(crate) fn emit(&self) -> bool {
+        self.emitters.iter().any(Triangle::emits)
+            || self.spheres.iter().any(|sphere| sphere.radiance.max_element() > 0.0)
+    }
 }
 
 /// The lights of a declared frame, to be changed before its plan is recorded again. Clones are the same one.
@@ -26,9 +42,12 @@ pub struct Control {
 /// Lights as kernels read them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Packed {
+    /// Those that stand for the spheres last.
     pub triangles: Vec<EmitterTriangle>,
-    pub glows: Vec<DeviceGlow>,
-    pub glow_count: u32,
+    /// Triangles that are no part of a sphere.
+    pub flat_count: u32,
+    pub spheres: Vec<EmitterSphere>,
+    pub sphere_count: u32,
     pub distant: Vec<[f32; 4]>,
 }
 
@@ -47,6 +66,7 @@ impl Control {
     /// is no distant light or order squared of it.
     pub fn set(&self, lights: &Lights<'_>) -> Result<(), RadianceError> {
         check(lights.emitters)?;
+        check_spheres(lights.spheres)?;
         let (expected, actual) = (self.coefficients, lights.distant.len());
         if actual != 0 && actual != expected {
             return Err(RadianceError::Length { what: "the distant light", expected, actual });
@@ -59,20 +79,22 @@ impl Control {
         let mut distant = vec![[0.0; 4]; self.coefficients];
         distant.iter_mut().zip(lights.distant).for_each(|(to, [r, g, b])| *to = [*r, *g, *b, 0.0]);
         // A buffer cannot be empty: one of no size and no light stands for none.
-        let mut triangles: Vec<_> = lights.emitters.iter().map(EmitterTriangle::from).collect();
-        let mut glows: Vec<_> = Glow::of(lights.emitters).iter().map(DeviceGlow::from).collect();
-        let glow_count = glows.len() as u32;
-        if triangles.is_empty() {
-            triangles.push(EmitterTriangle::default());
-        }
-        if glows.is_empty() {
-            glows.push(DeviceGlow::default());
-        }
-        *self.lock() = Packed { triangles, glows, glow_count, distant };
+        let mut triangles: Vec<_> = lights.triangles().iter().map(EmitterTriangle::from).collect();
+        let mut spheres: Vec<_> = lights.spheres.iter().map(EmitterSphere::from).collect();
+        let (flat_count, sphere_count) = (lights.emitters.len() as u32, spheres.len() as u32);
+        or_nothing(&mut triangles);
+        or_nothing(&mut spheres);
+        *self.lock() = Packed { triangles, flat_count, spheres, sphere_count, distant };
         Ok(())
     }
 
     pub(crate) fn lock(&self) -> MutexGuard<'_, Packed> {
         self.packed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn or_nothing<T: Default>(list: &mut Vec<T>) {
+    if list.is_empty() {
+        list.push(T::default());
     }
 }

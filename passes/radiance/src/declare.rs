@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use airglow_gpu::{Imports, Record};
+use airglow_gpu::{Imports, Look, Record};
 use airglow_graph::{Buffer, BufferDesc, Graph, Handle};
 
 use crate::RadianceError;
 use crate::control::{Control, Lights};
+use crate::health::looks;
 use crate::radiance::Radiance;
 use crate::receiver::Receiver;
 use crate::stage::{Bindings, Prepared, Resource, Scene, Stage};
@@ -17,6 +18,8 @@ use crate::stage::{Bindings, Prepared, Resource, Scene, Stage};
 pub struct Lit {
     /// The light of each part's vertices, `[[f32; 3]; order^2]` a vertex; empty when the pass was left out.
     pub light: Vec<Handle<Buffer>>,
+    /// What a [`Tally`](airglow_gpu::Tally) of [`HEALTH`](crate::HEALTH) looks at; empty when the pass was left out.
+    pub looks: Vec<Look<Handle<Buffer>>>,
     /// Changes the lights before the plan is recorded again; `None` when the pass was left out.
     pub control: Option<Control>,
 }
@@ -38,7 +41,7 @@ impl Radiance {
             self.prepare(receiver, lights)?;
         graph.pipelines("radiance", Self::PIPELINES);
         left_out.into_iter().for_each(|left_out| graph.leave_out(left_out));
-        let Some(scene) = scene else { return Ok(Lit { light: Vec::new(), control }) };
+        let Some(scene) = scene else { return Ok(Lit { light: Vec::new(), looks: Vec::new(), control }) };
         let mut named = BTreeMap::new();
         for (resource, buffer, state) in ours {
             let handle = graph.import_buffer(&resource.to_string(), *buffer.desc(), state, state);
@@ -53,7 +56,8 @@ impl Radiance {
             declare(graph, &mut named, &scene, stage);
         }
         let light = |part: u32| named.get(&Resource::VertexLight(part)).copied();
-        Ok(Lit { light: (0..light_bytes.len() as u32).filter_map(light).collect(), control })
+        let looks = looks(receiver, light, named.get(&Resource::State).copied());
+        Ok(Lit { light: (0..light_bytes.len() as u32).filter_map(light).collect(), looks, control })
     }
 }
 

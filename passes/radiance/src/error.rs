@@ -43,6 +43,16 @@ pub enum RadianceError {
         /// What can be given.
         range: &'static str,
     },
+    /// A receiver that the memory budget has no room for.
+    #[error("the receiver takes {size} bytes and the memory budget has {left} left: {mend}")]
+    Budget {
+        /// Bytes needed, those of copies to the device included.
+        size: u64,
+        /// Bytes left.
+        left: u64,
+        /// The next settings that fit, in words.
+        mend: String,
+    },
     /// More vertices than the hierarchy's indices can hold.
     #[error("the receiver has {count} vertices: give at most {limit}")]
     TooMany {

@@ -22,13 +22,14 @@
 //! let part = Part { vertices: 0..positions.len() as u32, turn: None };
 //! let receiver = Receiver::new(context, settings, &tree, positions, &[part])?;
 //! let radiance = Radiance::new(context, settings)?;
-//! let lit = radiance.add(graph, imports, &receiver, &Lights { emitters: lamp, distant: &[] })?;
+//! let lit = radiance.add(graph, imports, &receiver, &Lights { emitters: lamp, ..Lights::default() })?;
 //! // … relight reads lit.light[0] as the light of each vertex; lit.control moves the lamp …
 //! # Ok(())
 //! # }
 //! ```
 #![forbid(unsafe_code)]
 
+mod budget;
 mod control;
 mod declare;
 mod emitter;
@@ -36,6 +37,7 @@ mod error;
 pub mod eval;
 mod glow;
 pub mod gpu;
+mod health;
 mod hierarchy;
 mod incident;
 mod octree;
@@ -55,9 +57,10 @@ mod testing;
 
 pub use control::{Control, Lights};
 pub use declare::Lit;
-pub use emitter::{Sphere, Triangle, check};
+pub use emitter::{Sphere, Triangle, check, check_spheres};
 pub use error::RadianceError;
 pub use glow::Glow;
+pub use health::HEALTH;
 pub use hierarchy::{Hierarchy, MAX_VERTICES, Node};
 pub use incident::Incident;
 pub use octree::{LEVELS, Octree};

@@ -40,9 +40,18 @@ impl Oracle {
         match self {
             Self::Printed => radius,
             Self::Argued => radius * radius,
+            Self::Transfer => self.share(node, vertices) * f64::from(node.spread),
+        }
+    }
+
+    /// The colour that a change of the node's light of norm 1 makes, root mean square over the whole receiver: by it samples
+    /// are held to be stale. Only [`Oracle::Transfer`] speaks of colours; for the others the largest number there is.
+    #[must_use]
+    pub fn share(self, node: &Node, vertices: usize) -> f64 {
+        match self {
+            Self::Printed | Self::Argued => f64::from(f32::MAX),
             Self::Transfer => {
-                let share = f64::from(node.count) / vertices.max(1) as f64;
-                f64::from(node.transfer_rms) * f64::from(node.spread) * share.sqrt()
+                f64::from(node.transfer_rms) * (f64::from(node.count) / vertices.max(1) as f64).sqrt()
             }
         }
     }

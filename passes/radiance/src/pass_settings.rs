@@ -14,13 +14,27 @@ pub struct PassSettings {
     pub face: u32,
     /// Rays along a side of a texel: 1, 2 or 4. Default 4: a lamp of a few degrees is not seen by texels alone.
     pub rays: u32,
+    /// Whether samples are taken in closed form where that is exact. Default on.
+    pub closed_forms: bool,
+    /// By what part of the bound, 0 or more, samples may be stale before they are taken again when emitters move; 0 takes all
+    /// of them in each frame that emitters move in, and needs half the memory. For [`Oracle::Transfer`](crate::Oracle).
+    /// Default 0.25: light within the bound of that from scratch at a fraction of its samples.
+    pub keep: f64,
     /// How far the tree is refined. Its limit says how much memory samples get.
     pub refinement: Settings,
 }
 
 impl Default for PassSettings {
     fn default() -> Self {
-        Self { order: 4, gradients: true, face: 8, rays: 4, refinement: Settings::default() }
+        Self {
+            order: 4,
+            gradients: true,
+            face: 8,
+            rays: 4,
+            closed_forms: true,
+            keep: 0.25,
+            refinement: Settings::default(),
+        }
     }
 }
 
@@ -28,8 +42,15 @@ impl Default for PassSettings {
 const MOST_SAMPLES: usize = 1 << 16;
 
 impl PassSettings {
-    pub(crate) fn check(&self) -> Result<(), RadianceError> {
+    /// Refuses what is out of range.
+    ///
+    /// # Errors
+    /// [`RadianceError::Setting`].
+    pub fn check(&self) -> Result<(), RadianceError> {
         self.refinement.check()?;
+        if self.keep.is_nan() || self.keep < 0.0 {
+            return Err(RadianceError::setting("keep", self.keep, "zero or more"));
+        }
         if !(3..=6).contains(&self.order) {
             return Err(RadianceError::setting("order", self.order, "3 to 6 bands"));
         }

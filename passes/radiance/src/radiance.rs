@@ -3,13 +3,14 @@
 use airglow_gpu::{Context, Requirements};
 use airglow_graph::{Access, LeftOut, PassKind};
 
+use crate::RadianceError;
 use crate::control::{Control, Lights};
+use crate::gpu::keep::KEEP_BINDINGS;
 use crate::gpu::refinement::REFINE_BINDINGS;
-use crate::gpu::{Refinement, Texels, VertexKernels, vertices};
+use crate::gpu::{Keep, Refinement, Texels, VertexKernels, vertices};
 use crate::pass_settings::PassSettings;
 use crate::receiver::Receiver;
 use crate::stage::{Prepared, Resource, Scene, Stage, Work};
-use crate::{RadianceError, Triangle};
 
 /// Incident radiance of near emitters. Made once for a device and [`PassSettings`]; holds no frame.
 #[derive(Clone)]
@@ -17,6 +18,7 @@ pub struct Radiance {
     settings: PassSettings,
     refinement: Refinement,
     texels: Texels,
+    keep: Keep,
     vertices: VertexKernels,
 }
 
@@ -26,6 +28,7 @@ impl Radiance {
     pub fn requirements(settings: &PassSettings) -> Requirements {
         Texels::requirements()
             .with_descriptors(&REFINE_BINDINGS)
+            .with_descriptors(&KEEP_BINDINGS)
             .with_descriptors(&vertices::bindings(settings.shape()))
             .with_descriptors(&vertices::TURN_BINDINGS)
     }
@@ -36,16 +39,19 @@ impl Radiance {
     /// [`RadianceError::Setting`] for settings out of range, [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: PassSettings) -> Result<Self, RadianceError> {
         settings.check()?;
+        let texels = Texels::new(context, settings.texels())?;
+        let texels = if settings.closed_forms { texels.with_closed_forms(context)? } else { texels };
         Ok(Self {
             settings,
             refinement: Refinement::new(context, settings.shape())?,
-            texels: Texels::new(context, settings.texels())?,
+            texels,
+            keep: Keep::new(context, settings.shape())?,
             vertices: VertexKernels::new(context, settings.shape())?,
         })
     }
 
     /// Pipelines that it holds.
-    pub(crate) const PIPELINES: usize = 4;
+    pub(crate) const PIPELINES: usize = 6;
 
     /// The settings it was made for.
     #[must_use]
@@ -81,6 +87,7 @@ impl Radiance {
             receiver: receiver.clone(),
             refinement: self.refinement.clone(),
             texels: self.texels.clone(),
+            keep: self.keep.clone(),
             vertices: self.vertices.clone(),
             control: control.clone(),
         };
@@ -95,7 +102,7 @@ impl Radiance {
     }
 
     fn left_out(&self, receiver: &Receiver, lights: &Lights<'_>) -> Option<LeftOut> {
-        let (why, would_return) = match lights.emitters.iter().any(Triangle::emits) {
+        let (why, would_return) = match lights.emit() {
             false => ("no emitter gives light", "an emitter whose radiance is above zero"),
             true if !receiver.reflects => ("no vertex reflects light", "a transfer vector that is not zero"),
             true => return None,
@@ -126,7 +133,20 @@ fn ours(receiver: &Receiver) -> Vec<(Resource, airglow_gpu::Buffer, Access)> {
     ] {
         ours.push((resource, buffer.clone(), kept));
     }
+    ours.extend(old(receiver).map(|(resource, buffer)| (resource, buffer.clone(), kept)));
     ours
+}
+
+/// Samples of the frame before, where there are any.
+fn old(receiver: &Receiver) -> impl Iterator<Item = (Resource, &airglow_gpu::Buffer)> {
+    receiver.old.iter().flat_map(|old| {
+        [
+            (Resource::OldPlaces, &old.places),
+            (Resource::OldLights, &old.lights),
+            (Resource::OldGradients, &old.gradients),
+            (Resource::OldState, &old.state),
+        ]
+    })
 }
 
 fn stages(receiver: &Receiver) -> Vec<Stage> {
@@ -142,6 +162,7 @@ fn stages(receiver: &Receiver) -> Vec<Stage> {
     let samples = samples.into_iter().chain([Resource::Gradients, Resource::State]);
     let mut uses = vec![(Resource::Tree, Read)];
     uses.extend(samples.map(|resource| (resource, Update)));
+    uses.extend(old(receiver).map(|(resource, _)| (resource, Update)));
     stages.push(Stage { name: "radiance samples", kind: PassKind::Compute, uses, work: Work::Samples });
     let read = [Resource::Slots, Resource::Places, Resource::Lights, Resource::Gradients, Resource::State];
     let read = receiver.staged().map(|(resource, _)| resource).chain(read);

@@ -13,7 +13,7 @@ use glam::DMat3;
 use crate::gpu::refinement::rounds;
 use crate::gpu::tree;
 use crate::gpu::vertices::{self, GROUP};
-use crate::gpu::{EmitterTriangle, LightShape, RefineState, SampleBuffers};
+use crate::gpu::{EmitterTriangle, LightShape, OldSamples, RefineState, SampleBuffers};
 use crate::part::{Chunk, Layout, Part};
 use crate::stage::Resource;
 use crate::{Hierarchy, PassSettings, RadianceError};
@@ -35,6 +35,8 @@ pub struct Receiver {
     /// The rotation of each part, by its index.
     pub(crate) rotations: BTreeMap<u32, Staged>,
     pub(crate) samples: SampleBuffers,
+    /// Those of the frame before, where samples are kept.
+    pub(crate) old: Option<OldSamples>,
     /// Rounds after which no node is left to split.
     pub(crate) rounds: u32,
     /// Of the root.
@@ -84,6 +86,10 @@ impl Receiver {
         let nodes = tree::nodes(hierarchy, settings.refinement.oracle);
         let Layout { vertices, groups, chunks } =
             Layout::new(hierarchy, positions, parts, chunk(range, settings.light_bytes()));
+        // Once where the device reads them and once where they are copied from.
+        let staged = size_of_val(&*nodes) + size_of_val(&*vertices) + size_of_val(&*groups);
+        let turned: u64 = rotations.values().map(|rotation| rotation.buffer.size()).sum();
+        settings.check_budget(nodes.len(), 2 * (staged as u64 + turned), context.memory_left())?;
         Ok(Self {
             settings,
             tree: Staged::new(context, "radiance tree", &nodes)?,
@@ -96,6 +102,7 @@ impl Receiver {
                 .collect(),
             rotations,
             samples: samples(context, &settings, nodes.len())?,
+            old: (settings.keep > 0.0).then(|| old_samples(context, &settings, nodes.len())).transpose()?,
             rounds: rounds(positions.len()),
             reach: root.reach,
             reflects: root.transfer > 0.0,
@@ -108,7 +115,8 @@ impl Receiver {
     pub fn bytes(&self) -> u64 {
         let SampleBuffers { slots, places, points, lights, gradients, state } = &self.samples;
         let samples = [slots, places, points, lights, gradients, state].into_iter();
-        samples.chain(self.staged().map(|(_, staged)| &staged.buffer)).map(Buffer::size).sum()
+        let all = samples.chain(self.staged().map(|(_, staged)| &staged.buffer));
+        all.map(Buffer::size).sum::<u64>() + self.old.as_ref().map_or(0, OldSamples::bytes)
     }
 
     /// What is copied to the device once.
@@ -153,13 +161,7 @@ fn chunk(range: u64, bytes: u64) -> u32 {
 /// Room for as many samples as the limit allows.
 fn samples(context: &Context, settings: &PassSettings, nodes: usize) -> Result<SampleBuffers, RadianceError> {
     let (shape, limit) = (settings.shape(), settings.refinement.limit.min(nodes));
-    let make = |name, size| {
-        let usage = BufferUsageFlags::STORAGE_BUFFER
-            | BufferUsageFlags::INDIRECT_BUFFER
-            | BufferUsageFlags::TRANSFER_SRC
-            | BufferUsageFlags::TRANSFER_DST;
-        context.create_buffer(Label::new(OWNER, name), &BufferDesc { size, usage }, Location::Device)
-    };
+    let make = |name, size| kept(context, name, size);
     Ok(SampleBuffers {
         slots: make("radiance slots", 4 * nodes as u64)?,
         places: make("radiance places", 4 * limit as u64)?,
@@ -168,6 +170,31 @@ fn samples(context: &Context, settings: &PassSettings, nodes: usize) -> Result<S
         gradients: make("radiance gradients", shape.gradient_bytes(limit))?,
         state: make("radiance state", size_of::<RefineState>() as u64)?,
     })
+}
+
+/// As much room for those of the frame before.
+fn old_samples(
+    context: &Context,
+    settings: &PassSettings,
+    nodes: usize,
+) -> Result<OldSamples, RadianceError> {
+    let (shape, limit) = (settings.shape(), settings.refinement.limit.min(nodes));
+    let make = |name, size| kept(context, name, size);
+    Ok(OldSamples {
+        places: make("radiance old places", 4 * limit as u64)?,
+        lights: make("radiance old lights", shape.light_bytes(limit))?,
+        gradients: make("radiance old gradients", shape.gradient_bytes(limit))?,
+        state: make("radiance old state", size_of::<RefineState>() as u64)?,
+    })
+}
+
+/// A buffer that lives from frame to frame.
+fn kept(context: &Context, name: &str, size: u64) -> Result<Buffer, GpuError> {
+    let usage = BufferUsageFlags::STORAGE_BUFFER
+        | BufferUsageFlags::INDIRECT_BUFFER
+        | BufferUsageFlags::TRANSFER_SRC
+        | BufferUsageFlags::TRANSFER_DST;
+    context.create_buffer(Label::new(OWNER, name), &BufferDesc { size, usage }, Location::Device)
 }
 
 /// A buffer of the device and what is still to be copied there, once.

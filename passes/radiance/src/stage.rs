@@ -8,7 +8,7 @@ use airglow_graph::{Access, LeftOut, PassKind};
 
 use crate::control::Control;
 use crate::gpu::vertices::VertexWork;
-use crate::gpu::{Refinement, TexelBuffers, Texels, VertexKernels};
+use crate::gpu::{DeviceGlow, Keep, Refinement, TexelBuffers, Texels, VertexKernels};
 use crate::receiver::Receiver;
 
 /// What a stage uses.
@@ -34,6 +34,14 @@ pub enum Resource {
     Gradients,
     /// How far refinement went.
     State,
+    /// The node of each sample of the frame before.
+    OldPlaces,
+    /// The light of each of these.
+    OldLights,
+    /// Their gradients.
+    OldGradients,
+    /// How far refinement went in the frame before.
+    OldState,
     /// The light of the vertices of a part, by its index: the result.
     VertexLight(u32),
 }
@@ -51,6 +59,10 @@ impl fmt::Display for Resource {
             Self::Lights => f.write_str("radiance lights"),
             Self::Gradients => f.write_str("radiance gradients"),
             Self::State => f.write_str("radiance state"),
+            Self::OldPlaces => f.write_str("radiance places of the frame before"),
+            Self::OldLights => f.write_str("radiance lights of the frame before"),
+            Self::OldGradients => f.write_str("radiance gradients of the frame before"),
+            Self::OldState => f.write_str("radiance state of the frame before"),
             Self::VertexLight(part) => write!(f, "radiance light of part {part}"),
         }
     }
@@ -98,6 +110,7 @@ pub(crate) struct Scene {
     pub receiver: Receiver,
     pub refinement: Refinement,
     pub texels: Texels,
+    pub keep: Keep,
     pub vertices: VertexKernels,
     pub control: Control,
 }
@@ -165,23 +178,36 @@ impl Scene {
         let (receiver, samples) = (&self.receiver, &self.receiver.samples);
         let settings = &receiver.settings.refinement;
         let triangles = recorder.upload(&packed.triangles)?;
-        let glows = recorder.upload(&packed.glows)?;
+        let glows = recorder.upload(&DeviceGlow::of(&packed.triangles, &sampled))?;
+        let same = sampled.len() == packed.triangles.len();
+        let old = receiver.old.as_ref().filter(|_| same);
+        if let Some(old) = old {
+            old.record_copy(recorder, samples)?;
+        }
         let texels = TexelBuffers {
             batch: samples.state.slice(0, size_of::<crate::gpu::Batch>() as u64)?,
             points: (&samples.points).into(),
             triangles,
             triangle_count: packed.triangles.len() as u32,
+            spheres: recorder.upload(&packed.spheres)?,
+            sphere_count: packed.sphere_count,
+            flat_count: packed.flat_count,
+            kept: old.is_some(),
             lights: (&samples.lights).into(),
             gradients: (&samples.gradients).into(),
         };
         let refine = |recorder: &mut Recorder<'_>, seed| {
-            let glows = (&glows, packed.glow_count);
-            self.refinement.record(recorder, &receiver.tree.buffer, samples, glows, settings, seed)
+            self.refinement.record(recorder, &receiver.tree.buffer, samples, &glows, settings, seed)
         };
         refine(recorder, true)?;
         for _ in 0..receiver.rounds {
             recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
             recorder.memory_barrier(Access::ComputeStorageWrite, Access::IndirectBuffer)?;
+            if let Some(old) = old {
+                let allowed = receiver.settings.keep * settings.bound;
+                self.keep.record(recorder, &receiver.tree.buffer, samples, old, &glows, allowed)?;
+                recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
+            }
             self.texels.record(recorder, &texels)?;
             recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
             refine(recorder, false)?;

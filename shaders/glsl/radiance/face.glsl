@@ -11,10 +11,11 @@ struct Triangle {
 };
 
 // A triangle as rays meet it: a ray r hits it where edge . r >= 0 for its three edges and plane . r > 0, which is then
-// |r| over the distance. The fourth components of the edges are the radiance.
+// |r| over the distance.
 struct Seen {
-    vec4 edges[3];
-    vec4 plane;
+    vec3 edges[3];
+    vec3 plane;
+    uint name; // 1 and its place in the buffer
 };
 
 // Distances below a nanometre count as one, so that no sum overflows.
@@ -66,18 +67,39 @@ bool face_meets(vec3 a, vec3 b, vec3 c, vec2 low, vec2 high)
     return !behind && !beside && !above;
 }
 
-// A triangle of no area, or whose plane holds the point, is met by no ray.
-Seen face_seen(vec3 a, vec3 b, vec3 c, vec3 radiance)
+// The plane of a triangle: its product with a unit ray is 1 over the distance. Zero for a triangle of no area and for one
+// whose plane holds the point: no ray meets these.
+vec3 face_plane(vec3 a, vec3 b, vec3 c, out float side)
 {
     vec3 normal = cross(b - a, c - a);
     float volume = dot(a, normal);
-    float side = sign(volume);
-    Seen seen;
-    seen.edges[0] = vec4(side * face_edge(b, c), radiance.r);
-    seen.edges[1] = vec4(side * face_edge(c, a), radiance.g);
-    seen.edges[2] = vec4(side * face_edge(a, b), radiance.b);
-    seen.plane = vec4(abs(volume) < 1e-37 ? vec3(0.0) : normal / volume, 0.0);
-    return seen;
+    side = sign(volume);
+    return abs(volume) < 1e-37 ? vec3(0.0) : normal / volume;
+}
+
+Seen face_seen(vec3 a, vec3 b, vec3 c, uint name)
+{
+    float side;
+    vec3 plane = face_plane(a, b, c, side);
+    vec3 edges[3] = vec3[3](side * face_edge(b, c), side * face_edge(c, a), side * face_edge(a, b));
+    return Seen(edges, plane, name);
+}
+
+// What a ray through `at` of the face makes of an edge or a plane: the same bits wherever it is asked, so that triangles that
+// share an edge leave no gap between them.
+float face_product(vec3 edge, vec2 at)
+{
+    precise float product = edge.x * at.x + (edge.y * at.y + edge.z);
+    return product;
+}
+
+// The nearness at which a ray meets a triangle, 0 where it does not.
+float face_nearness(Seen seen, vec2 at)
+{
+    float least = min(face_product(seen.edges[0], at),
+        min(face_product(seen.edges[1], at), face_product(seen.edges[2], at)));
+    float nearness = face_product(seen.plane, at);
+    return least >= 0.0 && nearness > 0.0 ? nearness : 0.0;
 }
 
 #endif

@@ -16,6 +16,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Tree { Node nodes[]; } tree
 layout(std430, set = 0, binding = 1) buffer Slots { uint values[]; } slots;
 // For each sample its node, with SPLIT.
 layout(std430, set = 0, binding = 2) buffer Places { uint values[]; } places;
+// And in the fourth component the number that the node's sample had in the frame before, or anything.
 layout(std430, set = 0, binding = 3) buffer Points { vec4 values[]; } points;
 layout(std430, set = 0, binding = 4) readonly buffer Lights { vec4 values[]; } lights;
 layout(std430, set = 0, binding = 5) buffer State {
@@ -24,12 +25,9 @@ layout(std430, set = 0, binding = 5) buffer State {
     uint limited; // 1: the limit kept a node from being split
     uint rounds;
     uint estimate; // the largest of a node not split, as bits
+    uint fresh; // samples that were taken in this frame
+    uint exact; // samples in closed form
 } state;
-
-struct Glow {
-    vec4 place; // centre of a triangle that emits, metres; its area
-    vec4 radiance; // RGB
-};
 layout(std430, set = 0, binding = 6) readonly buffer Glows { Glow values[]; } glows;
 
 const uint PRINTED = 0u;
@@ -115,8 +113,8 @@ uint split(uint node, float strength, uint offset)
         if (offset != NONE) {
             uint sampled = offset + found;
             places.values[sampled] = i;
+            points.values[sampled] = vec4(part.mean, float(slots.values[i]));
             slots.values[i] = sampled;
-            points.values[sampled] = vec4(part.mean, 0.0);
         }
         ++found;
         i = end;
@@ -127,13 +125,15 @@ uint split(uint node, float strength, uint offset)
 void begin()
 {
     places.values[0] = 0u;
+    points.values[0] = vec4(tree.nodes[0].mean, float(slots.values[0]));
     slots.values[0] = 0u;
-    points.values[0] = vec4(tree.nodes[0].mean, 0.0);
     state.batch = Batch(1u, 1u, 1u, 0u);
     state.taken = 1u;
     state.limited = 0u;
     state.rounds = 1u;
     state.estimate = 0u;
+    state.fresh = 0u;
+    state.exact = 0u;
 }
 
 void main()
@@ -160,6 +160,9 @@ void main()
             node = places.values[sampled];
             strength = signal(sampled);
             estimate = tree.nodes[node].weight * strength;
+            float how = lights.values[sampled * settings.light_stride + settings.coefficients].z;
+            if (how < KEPT) { atomicAdd(state.fresh, 1u); }
+            if (how == EXACT || how == KEPT_EXACT) { atomicAdd(state.exact, 1u); }
             if (estimate > settings.bound) { wanted = split(node, strength, NONE); }
         }
         parts[local] = wanted;

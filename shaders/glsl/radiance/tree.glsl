@@ -12,7 +12,7 @@ struct Node {
     float reach; // about the mean: holds its vertices
     float weight; // what the oracle multiplies a sample's signal with; below 0 where no vertex reflects light
     uint count; // vertices
-    uint unused;
+    float share; // colour that a change of the light of norm 1 makes, over all vertices
 };
 
 // A node that was split: its parts were sampled in its place.

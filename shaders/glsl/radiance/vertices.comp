@@ -52,6 +52,8 @@ layout(push_constant) uniform Settings {
 const uint LIST = 256u;
 shared vec4 domains[LIST]; // centre and radius
 shared uint sampled[LIST];
+// Of each vertex a bit for each listed sample whose domain holds it: neighbours take different samples at once.
+shared int held[LIST / 32u * 64u];
 shared uint found;
 shared uint next; // node of the walk
 
@@ -98,34 +100,47 @@ float domain_weight(vec3 point, vec4 domain)
     return weight * weight;
 }
 
-// Adds to four coefficients from the first on what the listed samples say of them at a point.
-void add(inout vec3 sums[4], vec3 point, uint first)
+// Finds which of the listed samples hold a vertex. The sum of their weights.
+float hold(vec3 point, uint local)
+{
+    float total = 0.0;
+    for (uint begin = 0u; begin < found; begin += 32u) {
+        int bits = 0;
+        for (uint k = begin; k < min(found, begin + 32u); ++k) {
+            float weight = domain_weight(point, domains[k]);
+            total += weight;
+            bits |= weight > 0.0 ? 1 << int(k - begin) : 0;
+        }
+        held[begin / 32u * 64u + local] = bits;
+    }
+    return total;
+}
+
+// Adds to four coefficients from the first on what a listed sample says of them at a point.
+void add(inout vec3 sums[4], vec3 point, uint k, uint first)
 {
     uint last = uint(COEFFICIENTS) - 1u;
-    for (uint k = 0u; k < found; ++k) {
-        vec4 domain = domains[k];
-        float weight = domain_weight(point, domain);
-        if (weight == 0.0) { continue; }
-        uint light = sampled[k] * uint(LIGHT_STRIDE);
+    vec4 domain = domains[k];
+    float weight = domain_weight(point, domain);
+    uint light = sampled[k] * uint(LIGHT_STRIDE);
 #if GRADIENTS
-        vec4 extent = lights.values[light + uint(LIGHT_EXTENT)];
-        vec3 step_ = point - domain.xyz;
-        float far = length(step_);
-        // Without light the distance is infinite, and so are the steps allowed.
-        float most = extent.y > 0.0 ? settings.trust * (extent.x / extent.y) : far;
-        if (far > most) { step_ *= most / far; }
-        uint slope = sampled[k] * uint(GRADIENT_STRIDE);
+    vec4 extent = lights.values[light + uint(LIGHT_EXTENT)];
+    vec3 step_ = point - domain.xyz;
+    float far = length(step_);
+    // Without light the distance is infinite, and so are the steps allowed.
+    float most = extent.y > 0.0 ? settings.trust * (extent.x / extent.y) : far;
+    if (far > most) { step_ *= most / far; }
+    uint slope = sampled[k] * uint(GRADIENT_STRIDE);
 #endif
-        for (uint j = 0u; j < 4u; ++j) {
-            uint i = min(first + j, last);
-            vec3 value = lights.values[light + i].rgb;
+    for (uint j = 0u; j < 4u; ++j) {
+        uint i = min(first + j, last);
+        vec3 value = lights.values[light + i].rgb;
 #if GRADIENTS
-            uint at = slope + 3u * i;
-            value += gradients.values[at].rgb * step_.x + gradients.values[at + 1u].rgb * step_.y
-                + gradients.values[at + 2u].rgb * step_.z;
+        uint at = slope + 3u * i;
+        value += gradients.values[at].rgb * step_.x + gradients.values[at + 1u].rgb * step_.y
+            + gradients.values[at + 2u].rgb * step_.z;
 #endif
-            sums[j] += weight * value;
-        }
+        sums[j] += weight * value;
     }
 }
 
@@ -146,10 +161,14 @@ void main()
         if (local == 0u) { walk(groups.balls[settings.first_group + gl_WorkGroupID.x]); }
         barrier();
         more = next < settings.nodes;
-        for (uint k = 0u; k < found; ++k) { total += domain_weight(vertex.position, domains[k]); }
+        total += hold(vertex.position, local);
         for (uint first = 0u; first < uint(COEFFICIENTS) && mine; first += 4u) {
             vec3 sums[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-            add(sums, vertex.position, first);
+            for (uint begin = 0u; begin < found; begin += 32u) {
+                for (int bits = held[begin / 32u * 64u + local]; bits != 0; bits &= bits - 1) {
+                    add(sums, vertex.position, begin + uint(findLSB(bits)), first);
+                }
+            }
             for (uint j = 0u; j < 4u; ++j) {
                 uint i = first + j;
                 if (i >= uint(COEFFICIENTS)) { continue; }

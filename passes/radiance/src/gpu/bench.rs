@@ -6,8 +6,8 @@ use airglow_graph::{Access, BufferDesc};
 use bytemuck::Pod;
 use glam::DVec3;
 
-use super::{Batch, EmitterTriangle, LightShape, TexelBuffers, Texels};
-use crate::{Incident, RadianceError, Triangle, check};
+use super::{Batch, EmitterSphere, EmitterTriangle, LightShape, TexelBuffers, Texels};
+use crate::{Incident, Lights, RadianceError, Triangle, check, check_spheres};
 
 const OWNER: &str = "radiance";
 
@@ -100,9 +100,23 @@ impl Bench<'_> {
         triangles: &[Triangle],
         points: &[DVec3],
     ) -> Result<Vec<Sampled>, RadianceError> {
-        check(triangles)?;
+        self.sampled_of(texels, &Lights { emitters: triangles, ..Lights::default() }, points)
+    }
+
+    /// The same of triangles and spheres.
+    ///
+    /// # Errors
+    /// As [`sampled`](Self::sampled).
+    pub fn sampled_of(
+        &self,
+        texels: &Texels,
+        lights: &Lights<'_>,
+        points: &[DVec3],
+    ) -> Result<Vec<Sampled>, RadianceError> {
+        check(lights.emitters)?;
+        check_spheres(lights.spheres)?;
         let shape = texels.settings().shape;
-        let buffers = self.buffers(shape, triangles, points)?;
+        let buffers = self.buffers_of(shape, lights, points)?;
         (self.run)(&mut |recorder| texels.record(recorder, &buffers))?;
         let (lights, gradients) = (buffers.lights.buffer(), buffers.gradients.buffer());
         let found = self.incidents(shape, points.len(), lights, gradients)?;
@@ -122,13 +136,31 @@ impl Bench<'_> {
         triangles: &[Triangle],
         points: &[DVec3],
     ) -> Result<TexelBuffers, RadianceError> {
-        let packed: Vec<EmitterTriangle> = triangles.iter().map(EmitterTriangle::from).collect();
+        self.buffers_of(shape, &Lights { emitters: triangles, ..Lights::default() }, points)
+    }
+
+    /// The same for triangles and spheres.
+    ///
+    /// # Errors
+    /// As [`buffers`](Self::buffers).
+    pub fn buffers_of(
+        &self,
+        shape: LightShape,
+        lights: &Lights<'_>,
+        points: &[DVec3],
+    ) -> Result<TexelBuffers, RadianceError> {
+        let packed: Vec<EmitterTriangle> = lights.triangles().iter().map(EmitterTriangle::from).collect();
+        let spheres: Vec<EmitterSphere> = lights.spheres.iter().map(EmitterSphere::from).collect();
         let positions: Vec<[f32; 4]> = points.iter().map(|p| p.extend(0.0).as_vec4().to_array()).collect();
         Ok(TexelBuffers {
             batch: (&self.upload("batch", &[Batch::new(0, points.len() as u32)])?).into(),
             points: (&self.upload("points", &positions)?).into(),
             triangles: (&self.upload("triangles", &packed)?).into(),
-            triangle_count: triangles.len() as u32,
+            triangle_count: packed.len() as u32,
+            spheres: (&self.upload("spheres", &spheres)?).into(),
+            sphere_count: spheres.len() as u32,
+            flat_count: lights.emitters.len() as u32,
+            kept: false,
             lights: (&self.scratch("lights", shape.light_bytes(points.len()))?).into(),
             gradients: (&self.scratch("gradients", shape.gradient_bytes(points.len()))?).into(),
         })

@@ -59,22 +59,27 @@ pub struct TexelConstants {
     pub triangle_count: u32,
     /// Texels along a side of a face.
     pub size: u32,
-    /// 1: samples that are exact already are left alone.
+    /// 1: samples that are exact already, or kept, are left alone.
     pub keep_exact: u32,
 }
 
-/// Bindings of `analytic.comp`: batch, points, triangles, lights, and gradients where there are any.
-pub const ANALYTIC_BINDINGS: [BindingDesc; 5] = [storage(0), storage(1), storage(2), storage(3), storage(4)];
+/// Bindings of `analytic.comp`: batch, points, triangles, lights, spheres, and gradients where there are any.
+pub const ANALYTIC_BINDINGS: [BindingDesc; 6] =
+    [storage(0), storage(1), storage(2), storage(3), storage(4), storage(5)];
 
-/// The most triangles that `analytic.comp` takes.
+/// The most triangles and spheres together that `analytic.comp` takes.
 pub const MOST_ANALYTIC: u32 = 32;
 
 /// `Settings` of `analytic.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct AnalyticConstants {
-    /// Triangles in the buffer.
+    /// Triangles that are no part of a sphere.
     pub triangle_count: u32,
+    /// Spheres.
+    pub sphere_count: u32,
+    /// 1: samples of earlier frames are left alone.
+    pub keep: u32,
 }
 
 /// The kernel of a shape and number of rays.

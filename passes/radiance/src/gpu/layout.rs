@@ -1,9 +1,9 @@
 //! What the kernels of this room read and write: `radiance/sample.glsl`, seen from the host.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
-use crate::{Incident, RadianceError, Triangle};
+use crate::{Incident, RadianceError, Sphere, Triangle};
 
 /// The samples that one dispatch takes: `count` of them from `first` on. The first three words are the arguments of an
 /// indirect dispatch, a workgroup for each sample, so that kernels may decide where to sample next.
@@ -44,10 +44,43 @@ impl From<&Triangle> for EmitterTriangle {
     }
 }
 
+impl EmitterTriangle {
+    /// Its corners, metres.
+    pub(crate) fn positions(&self) -> [Vec3; 3] {
+        self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z))
+    }
+
+    /// Its radiance, W/sr/m2.
+    pub(crate) fn radiance(&self) -> Vec3 {
+        let [a, b, c] = self.corners;
+        Vec3::new(a[3], b[3], c[3])
+    }
+}
+
+/// A sphere as kernels read it, in the same space.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EmitterSphere {
+    /// Centre and radius, metres.
+    pub place: [f32; 4],
+    /// Radiance, W/sr/m2, and 0.
+    pub radiance: [f32; 4],
+}
+
+impl From<&Sphere> for EmitterSphere {
+    fn from(sphere: &Sphere) -> Self {
+        Self {
+            place: sphere.centre.extend(sphere.radius).as_vec4().to_array(),
+            radiance: sphere.radiance.extend(0.0).as_vec4().to_array(),
+        }
+    }
+}
+
 /// How large a sample's light is in memory.
 ///
 /// `lights`: [`stride`](Self::stride) vec4 a sample, coefficients first (RGB, 0), then (solid angle, nearness, 1 where they
-/// are closed forms, 0), then (slope RGB, 0). `gradients`, if there: [`gradient_stride`](Self::gradient_stride) vec4 a sample, d/dx, d/dy and d/dz of
+/// are closed forms, and 2 more where they were kept from an earlier frame, what they may have changed by since), then
+/// (slope RGB, 0). `gradients`, if there: [`gradient_stride`](Self::gradient_stride) vec4 a sample, d/dx, d/dy and d/dz of
 /// the first coefficient (RGB, 0), then of the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LightShape {

@@ -2,6 +2,8 @@
 
 pub mod bench;
 mod global;
+pub mod glow;
+pub mod keep;
 pub mod kernels;
 mod layout;
 mod read;
@@ -11,7 +13,9 @@ pub mod tree;
 pub mod vertices;
 
 pub use global::{GLOBAL_BINDINGS, Global, GlobalWork};
-pub use layout::{Batch, EmitterTriangle, LightShape};
+pub use glow::DeviceGlow;
+pub use keep::{Keep, OldSamples};
+pub use layout::{Batch, EmitterSphere, EmitterTriangle, LightShape};
 pub use refinement::{RefineState, Refinement, SampleBuffers};
 pub use texels::{TexelBuffers, TexelSettings, Texels};
 pub use tree::DeviceNode;

@@ -6,8 +6,8 @@ use airglow_gpu::{
 use airglow_gpu::{Context, GpuError, Recorder};
 use bytemuck::{Pod, Zeroable};
 
-use super::{Batch, LightShape};
-use crate::{Glow, Oracle, RadianceError, Settings};
+use super::{Batch, DeviceGlow, LightShape};
+use crate::{Oracle, RadianceError, Settings};
 
 /// What a kernel binds.
 pub const REFINE_BINDINGS: [BindingDesc; 7] = {
@@ -37,25 +37,10 @@ pub struct RefineState {
     pub rounds: u32,
     /// The largest estimate of a node that was not split.
     pub estimate: f32,
-}
-
-/// A triangle that emits, as the kernel reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct DeviceGlow {
-    /// Centre, metres, and area, m2.
-    pub place: [f32; 4],
-    /// Radiance, W/sr/m2.
-    pub radiance: [f32; 4],
-}
-
-impl From<&Glow> for DeviceGlow {
-    fn from(glow: &Glow) -> Self {
-        Self {
-            place: glow.centre.extend(glow.area).as_vec4().to_array(),
-            radiance: glow.radiance.extend(0.0).as_vec4().to_array(),
-        }
-    }
+    /// Samples that were taken in this frame; the others were kept.
+    pub fresh: u32,
+    /// Samples in closed form; the others are cube maps.
+    pub exact: u32,
 }
 
 #[repr(C)]
@@ -124,7 +109,7 @@ impl Refinement {
         recorder: &mut Recorder<'_>,
         nodes: &Buffer,
         samples: &SampleBuffers,
-        glows: (&BufferSlice, u32),
+        glows: &BufferSlice,
         settings: &Settings,
         seed: bool,
     ) -> Result<(), GpuError> {
@@ -135,7 +120,7 @@ impl Refinement {
             Binding::storage(3, &samples.points),
             Binding::storage(4, &samples.lights),
             Binding::storage(5, &samples.state),
-            Binding::storage(6, glows.0.clone()),
+            Binding::storage(6, glows.clone()),
         ];
         recorder.bind_compute(&self.pipeline, &bound)?;
         recorder.push_constants(&Round {
@@ -149,7 +134,7 @@ impl Refinement {
             limit: settings.limit as u32,
             bound: settings.bound.min(f64::from(f32::MAX)) as f32,
             hidden: settings.hidden as f32,
-            glows: glows.1,
+            glows: (glows.size() / size_of::<DeviceGlow>() as u64) as u32,
             coefficients: self.shape.coefficients() as u32,
             light_stride: self.shape.stride() as u32,
         })?;

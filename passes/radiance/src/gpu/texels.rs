@@ -32,10 +32,18 @@ pub struct TexelBuffers {
     pub batch: BufferSlice,
     /// Where samples are taken: a vec4 each, metres, the fourth component unused.
     pub points: BufferSlice,
-    /// [`EmitterTriangle`](super::EmitterTriangle)s.
+    /// [`EmitterTriangle`](super::EmitterTriangle)s, those that stand for the spheres last.
     pub triangles: BufferSlice,
     /// How many of them.
     pub triangle_count: u32,
+    /// [`EmitterSphere`](super::EmitterSphere)s: what closed forms take in the place of their triangles.
+    pub spheres: BufferSlice,
+    /// How many of them.
+    pub sphere_count: u32,
+    /// Triangles that are no part of a sphere.
+    pub flat_count: u32,
+    /// Whether samples whose records say that they were kept are left alone.
+    pub kept: bool,
     /// Takes the light of each sample, as [`LightShape`] says.
     pub lights: BufferSlice,
     /// Takes the gradients; not touched where the shape has none.
@@ -56,7 +64,7 @@ impl Texels {
     /// What a device must offer.
     #[must_use]
     pub fn requirements() -> Requirements {
-        Requirements::engine().with_descriptors(&TEXEL_BINDINGS)
+        Requirements::engine().with_descriptors(&TEXEL_BINDINGS).with_descriptors(&ANALYTIC_BINDINGS)
     }
 
     /// Makes kernel and table.
@@ -78,8 +86,8 @@ impl Texels {
         Ok(Self { settings, pipeline, analytic: None, solid_angles })
     }
 
-    /// The same, that samples up to [`MOST_ANALYTIC`] triangles in closed form from where none that emits overlaps
-    /// another: the device decides for each sample, whose record says so, and only the others are cube maps.
+    /// The same, that samples up to [`MOST_ANALYTIC`] triangles and spheres in closed form from where none that emits
+    /// overlaps another: the device decides for each sample, whose record says so, and only the others are cube maps.
     ///
     /// # Errors
     /// [`RadianceError::Gpu`] when the device refuses.
@@ -88,7 +96,7 @@ impl Texels {
         self.analytic = Some(context.create_compute_pipeline(&ComputePipelineDesc {
             name: "radiance closed forms",
             spirv: &kernels::analytic(shape)?,
-            bindings: &ANALYTIC_BINDINGS[..4 + usize::from(shape.gradients)],
+            bindings: &ANALYTIC_BINDINGS[..5 + usize::from(shape.gradients)],
             push_constant_size: size_of::<AnalyticConstants>() as u32,
         })?);
         Ok(self)
@@ -112,13 +120,21 @@ impl Texels {
     /// # Errors
     /// [`GpuError::Misuse`] for buffers that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, buffers: &TexelBuffers) -> Result<(), GpuError> {
-        let triangle_count = buffers.triangle_count;
-        let analytic = self.analytic.as_ref().filter(|_| triangle_count <= MOST_ANALYTIC);
+        let TexelBuffers { triangle_count, flat_count, sphere_count, kept, .. } = *buffers;
+        let bodies = flat_count.saturating_add(sphere_count);
+        let analytic = self.analytic.as_ref().filter(|_| bodies <= MOST_ANALYTIC);
         if let Some(pipeline) = analytic {
-            let slices =
-                [&buffers.batch, &buffers.points, &buffers.triangles, &buffers.lights, &buffers.gradients];
+            let slices = [
+                &buffers.batch,
+                &buffers.points,
+                &buffers.triangles,
+                &buffers.lights,
+                &buffers.spheres,
+                &buffers.gradients,
+            ];
             self.bind(recorder, pipeline, &slices)?;
-            recorder.push_constants(&AnalyticConstants { triangle_count })?;
+            let keep = u32::from(kept);
+            recorder.push_constants(&AnalyticConstants { triangle_count: flat_count, sphere_count, keep })?;
             recorder.dispatch_indirect(buffers.batch.clone())?;
             recorder.memory_barrier(Access::ComputeStorageWrite, Access::ComputeStorageReadWrite)?;
         }
@@ -134,7 +150,7 @@ impl Texels {
         recorder.push_constants(&TexelConstants {
             triangle_count,
             size: self.settings.size,
-            keep_exact: analytic.is_some().into(),
+            keep_exact: (analytic.is_some() || kept).into(),
         })?;
         recorder.dispatch_indirect(buffers.batch.clone())
     }

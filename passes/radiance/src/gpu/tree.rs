@@ -19,8 +19,8 @@ pub struct DeviceNode {
     pub weight: f32,
     /// Vertices.
     pub count: u32,
-    /// 0.
-    pub unused: u32,
+    /// The colour that a change of its light of norm 1 makes, root mean square over all vertices.
+    pub share: f32,
 }
 
 /// The nodes in the tree's order.
@@ -32,7 +32,7 @@ pub fn nodes(hierarchy: &Hierarchy, oracle: Oracle) -> Vec<DeviceNode> {
         reach: node.reach,
         weight: if node.transfer == 0.0 { -1.0 } else { oracle.weight(node, vertices) as f32 },
         count: node.count,
-        unused: 0,
+        share: oracle.share(node, vertices) as f32,
     };
     let mut nodes: Vec<_> = hierarchy.nodes().iter().map(node).collect();
     // The nodes above one are those whose range of nodes holds it.

@@ -1,17 +1,28 @@
 //! This room inside a host with a device of its own, by both roads.
 
+use std::sync::LazyLock;
+
 use airglow_gpu::ash::vk::BufferUsageFlags;
-use airglow_gpu::{Context, Options, Recorder, Requirements};
+use airglow_gpu::requirements::Limit;
+use airglow_gpu::{Context, DeviceMask, Options, Recorder, Requirements};
 use airglow_graph::Access;
-use airglow_radiance::{Bindings, Lights, Part, PassSettings, Prepared, Radiance, Receiver, Resource};
-use airglow_tests::conformance::{Declared, Given, HostResource, Refusal, Room, conform};
+use airglow_radiance::{
+    Bindings, Lights, Part, PassSettings, Prepared, Radiance, Receiver, Resource, Settings,
+};
+use airglow_tests::compare::assert_close;
+use airglow_tests::conformance::{
+    Declared, Given, HostResource, Outputs, Refusal, Room, change, conform, fail_each, shuffle,
+};
+use airglow_tests::narrow;
 use glam::DMat3;
 
 use crate::receivers::Mesh;
 use crate::scenes::blocks;
 
-const SETTINGS: fn() -> PassSettings =
-    || PassSettings { order: 3, gradients: false, face: 8, rays: 1, ..PassSettings::default() };
+const SETTINGS: fn() -> PassSettings = || {
+    let refinement = Settings { limit: 40, ..Settings::default() };
+    PassSettings { order: 3, gradients: false, face: 8, rays: 1, refinement, ..PassSettings::default() }
+};
 const NAMES: [&str; 2] = ["light of the first part", "light of the second part"];
 
 /// The light of two instances, which a host keeps.
@@ -23,16 +34,21 @@ struct Lit {
 }
 
 impl Lit {
-    fn new(context: &Context) -> Self {
-        let mesh = Mesh::ball(12, 3, false);
+    fn new(context: &Context) -> Result<Self, Refusal> {
+        Self::with(context, SETTINGS())
+    }
+
+    fn with(context: &Context, settings: PassSettings) -> Result<Self, Refusal> {
+        static MESH: LazyLock<Mesh> = LazyLock::new(|| Mesh::ball(12, 3, false));
+        let mesh = &*MESH;
         let parts = [
             Part { vertices: 0..70, turn: None },
             Part { vertices: 70..144, turn: Some(DMat3::from_rotation_x(0.4)) },
         ];
-        let receiver = Receiver::new(context, SETTINGS(), &mesh.tree, &mesh.positions, &parts).unwrap();
-        let radiance = Radiance::new(context, SETTINGS()).unwrap();
-        let sizes = parts.iter().map(|part| SETTINGS().light_bytes() * part.vertices.len() as u64);
-        Self { radiance, receiver, sizes: sizes.collect(), prepared: None }
+        let receiver = Receiver::new(context, settings, &mesh.tree, &mesh.positions, &parts)?;
+        let radiance = Radiance::new(context, settings)?;
+        let sizes = parts.iter().map(|part| settings.light_bytes() * part.vertices.len() as u64);
+        Ok(Self { radiance, receiver, sizes: sizes.collect(), prepared: None })
     }
 }
 
@@ -49,14 +65,14 @@ impl Room for Lit {
     }
 
     fn add(&mut self, to: &mut Declared<'_>) -> Result<(), Refusal> {
-        let lights = Lights { emitters: &blocks(), distant: &[] };
+        let lights = Lights { emitters: &blocks(), ..Lights::default() };
         let lit = self.radiance.add(to.graph, to.imports, &self.receiver, &lights)?;
         (0..).zip(lit.light).try_for_each(|(place, light)| to.keep(light, place))
     }
 
     fn accesses(&mut self, _: &Context) -> Result<Vec<Option<(Access, Access)>>, Refusal> {
         let prepared =
-            self.radiance.prepare(&self.receiver, &Lights { emitters: &blocks(), distant: &[] })?;
+            self.radiance.prepare(&self.receiver, &Lights { emitters: &blocks(), ..Lights::default() })?;
         let accesses = prepared.accesses();
         let ends = |part| {
             let (_, all) = accesses.iter().find(|(resource, _)| *resource == Resource::VertexLight(part))?;
@@ -76,10 +92,53 @@ impl Room for Lit {
     }
 }
 
+fn outputs(options: &Options) -> Outputs {
+    conform(|context| Lit::new(context).unwrap(), &Radiance::requirements(&SETTINGS()), options)
+}
+
+/// The light, as values.
+fn values(outputs: &Outputs) -> Vec<f32> {
+    let value = |x: &[u8]| f32::from_le_bytes([x[0], x[1], x[2], x[3]]);
+    outputs.iter().flat_map(|bytes| bytes.chunks_exact(4).map(value)).collect()
+}
+
 #[test]
-fn both_roads_give_the_same_bits() {
-    let outputs = conform(Lit::new, &Radiance::requirements(&SETTINGS()), &Options::default());
-    let bright =
-        |bytes: &Vec<u8>| bytes.chunks_exact(4).any(|x| f32::from_le_bytes([x[0], x[1], x[2], x[3]]) > 0.1);
-    assert!(outputs.len() == 2 && outputs.iter().all(bright));
+fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads_and_on_a_lesser_one() {
+    let whole = outputs(&Options::default());
+    assert!(whole.len() == 2 && whole.chunks(1).all(|part| values(&part.to_vec()).iter().any(|x| *x > 0.1)));
+    // 108 bytes a vertex: parts in chunks of 64; the tree fits just so.
+    let limits = vec![(Limit::StorageBufferRange, 9 << 10)];
+    let mask = DeviceMask { limits, without_optional_features: true };
+    assert!(outputs(&Options { mask, breadcrumbs: true, ..Options::default() }) == whole);
+}
+
+#[test]
+fn narrow_vectors_stay_within_rounding() {
+    let values = values(&outputs(&Options::default()));
+    let Some(narrow) = narrow::again("conformance::narrow_vectors_stay_within_rounding", &values) else {
+        return;
+    };
+    let wide: Vec<f64> = values.iter().copied().map(f64::from).collect();
+    assert_close("subgroups of 4", &narrow, &wide, 1e-5, 1e-5);
+}
+
+#[test]
+fn every_call_that_fails_is_told_and_leaves_nothing() {
+    let calls = fail_each(Lit::new, &Radiance::requirements(&SETTINGS()));
+    println!("{calls} calls failed in turn");
+    assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn quality_changes_while_frames_are_on_the_device() {
+    let fine = PassSettings { gradients: true, rays: 2, ..SETTINGS() };
+    let requirements = Radiance::requirements(&SETTINGS()).and(&Radiance::requirements(&fine));
+    change(&[&Lit::new, &|context| Lit::with(context, fine)], &requirements);
+}
+
+#[test]
+fn every_legal_order_gives_the_same_bits() {
+    let orders = shuffle(Lit::new, &Radiance::requirements(&SETTINGS()), 0..3);
+    println!("{orders} orders gave the same bits");
+    assert!(orders > 1);
 }

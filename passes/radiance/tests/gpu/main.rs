@@ -3,12 +3,14 @@
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 mod conformance;
+mod health;
 mod motion;
 mod pass;
 mod receivers;
 mod scenes;
 mod stability;
 mod texels;
+mod world;
 
 use airglow_gpu::{GpuError, Recorder, Requirements};
 use airglow_radiance::gpu::bench::Bench;

@@ -55,7 +55,7 @@ fn reconstructed(mesh: &Mesh, refined: &Refined, settings: &PassSettings, distan
 }
 
 fn settings(order: usize, gradients: bool, refinement: Settings) -> PassSettings {
-    PassSettings { order, gradients, face: 8, rays: 1, refinement }
+    PassSettings { order, gradients, face: 8, rays: 1, closed_forms: true, keep: 0.0, refinement }
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn light_of_vertices_is_that_of_the_reference_from_the_same_samples() {
         let distant: Vec<[f32; 3]> = (0..order * order).map(|i| [0.1, 0.2 * i as f32, -0.1]).collect();
         let distant = if order == 4 { distant } else { Vec::new() };
         let settings = settings(order, gradients, Settings { bound, limit: 700, ..Settings::default() });
-        let lights = Lights { emitters: &blocks(), distant: &distant };
+        let lights = Lights { emitters: &blocks(), distant: &distant, ..Lights::default() };
         let Run { light, refined } = with_bench(&Radiance::requirements(&settings), |bench| {
             let radiance = Radiance::new(bench.context, settings).unwrap();
             Run::new(bench, &radiance, &mesh, settings, &lights)
@@ -96,7 +96,7 @@ fn samples_are_those_that_a_cpu_chooses() {
             for (bound, limit, stride) in cases {
                 let refinement = Settings { oracle, bound, limit, stride, ..Settings::default() };
                 let settings = PassSettings { refinement, ..made };
-                let lights = Lights { emitters: &emitters, distant: &[] };
+                let lights = Lights { emitters: &emitters, ..Lights::default() };
                 let refined = Run::new(bench, &radiance, &mesh, settings, &lights).refined;
                 let driven = refine(&mesh.tree, &refinement, &Glow::of(&emitters), &mut |points| {
                     bench.texels(&texels, &emitters, points)
@@ -133,7 +133,7 @@ fn samples_are_taken_only_where_they_count() {
         });
         let black =
             Receiver::new(bench.context, settings, &tree.unwrap(), &mesh.positions, &mesh.whole()).unwrap();
-        let lights = Lights { emitters: &far, distant: &[] };
+        let lights = Lights { emitters: &far, ..Lights::default() };
         assert_eq!(Run::new(bench, &radiance, &mesh, settings, &lights).refined.samples.len(), 1);
         let lit = mesh.receiver(bench, settings);
         let dark = block(DVec3::Y, 0.1, DVec3::ZERO);
@@ -142,7 +142,7 @@ fn samples_are_taken_only_where_they_count() {
             (&lit, &dark[..], "no emitter gives light"),
             (&lit, &[], "no emitter gives light"),
         ] {
-            let prepared = radiance.prepare(receiver, &Lights { emitters, distant: &[] }).unwrap();
+            let prepared = radiance.prepare(receiver, &Lights { emitters, ..Lights::default() }).unwrap();
             assert!(prepared.stages.is_empty() && prepared.control.is_none());
             assert_eq!(prepared.left_out.unwrap().why, why);
         }
@@ -160,7 +160,8 @@ fn parts_get_light_in_their_own_space() {
         let radiance = Radiance::new(bench.context, settings).unwrap();
         let parts = [Part { vertices: 0..50, turn: Some(turn) }, Part { vertices: 30..144, turn: None }];
         let receiver = Receiver::new(bench.context, settings, &mesh.tree, &mesh.positions, &parts).unwrap();
-        let prepared = radiance.prepare(&receiver, &Lights { emitters: &blocks(), distant: &[] }).unwrap();
+        let prepared =
+            radiance.prepare(&receiver, &Lights { emitters: &blocks(), ..Lights::default() }).unwrap();
         let buffers = bench.light_buffers(&prepared).unwrap();
         bench.frame(&prepared, &buffers).unwrap();
         let light = bench.light::<[f32; 3]>(&buffers).unwrap();

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use airglow_math::World;
 use airglow_math::sh::zonal::{clamped_cosine, rotate_to_direction};
 use airglow_radiance::Hierarchy;
 use airglow_radiance::gpu::bench::Bench;
@@ -45,6 +46,16 @@ impl Mesh {
         Self::new(positions, &directions.iter().enumerate().map(normal).collect::<Vec<_>>(), order)
     }
 
+    /// The ball as a host has it, about its own axes and in its units.
+    pub fn ball_of(world: &World, side: usize, order: usize) -> Self {
+        let ball = Self::ball(side, order, false);
+        let points: Vec<DVec3> = (0..ball.positions.len()).map(|vertex| ball.point(vertex)).collect();
+        let positions = points.iter().map(|p| world.host_position(*p).as_vec3().to_array()).collect();
+        let normals: Vec<Vec3> =
+            points.iter().map(|p| world.host_direction(p.normalize()).as_vec3()).collect();
+        Self::new(positions, &normals, order)
+    }
+
     /// All of it in one part.
     pub fn whole(&self) -> [Part; 1] {
         [Part { vertices: 0..self.positions.len() as u32, turn: None }]
@@ -52,6 +63,14 @@ impl Mesh {
 
     pub fn receiver(&self, bench: &Bench<'_>, settings: PassSettings) -> Receiver {
         Receiver::new(bench.context, settings, &self.tree, &self.positions, &self.whole()).unwrap()
+    }
+
+    /// Red of each vertex under light of its own, order 3.
+    pub fn colours(&self, light: &[f32]) -> Vec<f64> {
+        let vertex = |(light, t): (&[f32], &[f32])| -> f64 {
+            light.chunks_exact(3).zip(t).map(|(l, t)| f64::from(l[0]) * f64::from(*t)).sum()
+        };
+        light.chunks_exact(27).zip(self.transfer.chunks_exact(9)).map(vertex).collect()
     }
 
     pub fn point(&self, vertex: usize) -> DVec3 {

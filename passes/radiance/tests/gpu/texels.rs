@@ -3,8 +3,8 @@
 use airglow_math::statistics::relative_l2;
 use airglow_radiance::gpu::kernels::{TEXEL_BINDINGS, TexelConstants};
 use airglow_radiance::gpu::{Batch, EmitterTriangle, LightShape, TexelSettings, Texels};
-use airglow_radiance::reference::{Cube, triangles};
-use airglow_radiance::{Incident, Triangle};
+use airglow_radiance::reference::{Cube, sphere, triangles};
+use airglow_radiance::{Incident, Lights, Sphere, Triangle};
 use airglow_tests::host_layout;
 use airglow_tests::reflect::Module;
 use glam::{DMat3, DVec3};
@@ -153,4 +153,54 @@ fn closed_forms_are_taken_where_they_are_exact() {
         check(&format!("order {order}, closed forms"), &closed, &closed_truth, 2e-6);
         check(&format!("order {order}, cube maps"), &mapped, &mapped_truth, 2e-6);
     }
+}
+
+/// Spheres among screens: closed forms where nothing overlaps, else the triangles that stand for them.
+#[test]
+fn spheres_are_closed_forms_where_nothing_hides_them() {
+    let lamp = |x: f64, z: f64, radius: f64, red: f64| Sphere {
+        centre: DVec3::new(x, 0.3, z),
+        radius,
+        radiance: DVec3::new(red, 1.0, 0.5),
+    };
+    let spheres = [lamp(0.75, -1.6, 0.3, 2.0), lamp(0.9, 1.4, 0.02, 9.0)];
+    let (emitters, points) = (screens(), points(24));
+    let (order, gradients) = (4, true);
+    let settings = TexelSettings { shape: LightShape { order, gradients }, size: 16, rays: 4 };
+    let lights = Lights { emitters: &emitters[..4], spheres: &spheres, ..Lights::default() };
+    let all = lights.triangles();
+    let cube = Cube::new(order, 16).unwrap().with_rays(4).unwrap().with_gradients();
+    let light = |point: DVec3| {
+        let mut light = triangles(order, point, lights.emitters).ok()?;
+        spheres.iter().for_each(|lamp| light.add(&sphere(order, point, lamp).unwrap()).unwrap());
+        Some(light)
+    };
+    let found = with_bench(&Texels::requirements(), |bench| {
+        let texels = Texels::new(bench.context, settings).unwrap().with_closed_forms(bench.context).unwrap();
+        bench.sampled_of(&texels, &lights, &points).unwrap()
+    });
+    let (mut closed, mut closed_truth, mut mapped, mut mapped_truth) = (vec![], vec![], vec![], vec![]);
+    for (point, sample) in points.iter().zip(found) {
+        if sample.exact {
+            let mut truth = light(*point).unwrap();
+            let step = 1e-5;
+            let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+                let [after, before] =
+                    [step, -step].map(|step| light(*point + step * axis).unwrap().coefficients);
+                let slope = |(after, before): (&DVec3, &DVec3)| (*after - *before) / (2.0 * step);
+                after.iter().zip(&before).map(slope).collect::<Vec<_>>()
+            });
+            let column = |i: usize| DMat3::from_cols(columns[0][i], columns[1][i], columns[2][i]);
+            truth.gradients = (0..order * order).map(column).collect();
+            closed_truth.push(truth);
+            closed.push(sample.light);
+        } else {
+            mapped.push(sample.light);
+            mapped_truth.push(cube.sample(*point, &all).unwrap());
+        }
+    }
+    println!("{} closed forms, {} cube maps", closed.len(), mapped.len());
+    assert!(closed.len() > 5 && mapped.len() > 2);
+    check("spheres and squares", &closed, &closed_truth, 2e-6);
+    check("spheres as triangles", &mapped, &mapped_truth, 5e-6);
 }
