@@ -1,6 +1,7 @@
 //! The knobs of the pass: range, default and its reason.
 
 use airglow_gpu::ash::vk;
+use airglow_graph::ImageDesc;
 
 use crate::FogError;
 use crate::error::check;
@@ -53,6 +54,25 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Bytes of a picture of so many pixels that the pass makes for the frame; `None` for a format whose size is not known.
+    #[must_use]
+    pub fn picture_bytes(&self, [width, height]: [u32; 2]) -> Option<u64> {
+        ImageDesc::new_2d(width, height, self.format).bytes()
+    }
+
+    /// The settings nearest below these whose picture fits `bytes`, what a refused plan's budget had left: half floats. None
+    /// when not even they fit: then the pass needs a target of the host's, such as [`Frame::target`](crate::Frame::target)
+    /// takes, or fewer pixels.
+    #[must_use]
+    pub fn next_that_fits(&self, size: [u32; 2], bytes: u64) -> Option<Self> {
+        let with = |format| Self { format, ..*self };
+        let formats = [self.format, vk::Format::R16G16B16A16_SFLOAT];
+        formats
+            .map(with)
+            .into_iter()
+            .find(|settings| settings.picture_bytes(size).is_some_and(|n| n <= bytes))
+    }
+
     /// Refuses what is out of range.
     ///
     /// # Errors

@@ -108,6 +108,9 @@ fn a_lamp_that_enters_makes_no_plan_no_pipeline_and_no_allocation() {
             recorded
         });
         recorded.unwrap();
+        // The picture is one tile, of one kind: the others draw nothing.
+        let draws: u64 = execution.counts().iter().map(|counts| counts.draws).sum();
+        assert_eq!(draws, 1, "{} lamps", LAMPS[frame % LAMPS.len()]);
     }
     frames.finish().unwrap();
     assert!(allocations() > 0, "nothing is counted");

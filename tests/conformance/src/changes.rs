@@ -10,7 +10,7 @@ use airglow_gpu::{Context, Execution, Options, Readback, Recorder, Requirements}
 /// Frames in flight.
 const IN_FLIGHT: usize = 2;
 /// Frames for each way to make the room.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
 
 /// How a room is made: the settings of a frame.
 pub type Make<'a, R> = &'a dyn Fn(&Context) -> Result<R, Refusal>;

@@ -4,9 +4,11 @@ use super::host::Host;
 use super::{HostDevice, Refusal, Road, Room};
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Context, Execution, GpuError, Options, Requirements};
+use std::cell::Cell;
 
 /// Makes a room and records it by both roads, once for each call of its that may fail, which then runs out of device
-/// memory. Nothing is submitted. The room must say so, and leave nothing alive. Returns how many calls failed.
+/// memory; what makes the room is the same for both, and fails on the first. Nothing is submitted. The room must say so, and
+/// leave nothing alive. Returns how many calls failed.
 ///
 /// # Safety
 /// As [`conform_on`](crate::conform_on).
@@ -21,30 +23,37 @@ pub unsafe fn fail_on<R: Room>(
     let requirements = Requirements::engine().and(requirements);
     // SAFETY: the caller's promise is ours.
     let host = unsafe { Host::new(host)? };
-    let mut failed = 0;
-    for road in [Road::Graph, Road::Record] {
-        failed += host.fail_each(&requirements, &make, road)?;
-    }
-    Ok(failed)
+    let (by_graph, made) = host.fail_each(&requirements, &make, Road::Graph, 0)?;
+    let (by_record, _) = host.fail_each(&requirements, &make, Road::Record, made)?;
+    Ok(by_graph + by_record)
 }
 
 impl Host<'_> {
+    /// Fails calls from `first` on; returns how many, and which was the first after the room was made.
     fn fail_each<R: Room>(
         &self,
         requirements: &Requirements,
         make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
         road: Road,
-    ) -> Result<u64, Refusal> {
+        first: u64,
+    ) -> Result<(u64, u64), Refusal> {
         let shim = self.watch();
+        let made = Cell::new(0);
+        let counted = |context: &Context, host: &HostDevice<'_>| {
+            let room = make(context, host);
+            made.set(shim.fallible());
+            room
+        };
         let attempt = |nth| {
             shim.fail(nth, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY);
             let adopt = || self.adopt(&shim, requirements, &Options::default(), 1);
-            let recorded = self.frame_of(&shim, adopt, &make, (road, Execution::prepare_shared), false);
+            let recorded = self.frame_of(&shim, adopt, counted, (road, Execution::prepare_shared), false);
             (recorded, shim.heal(), shim.alive())
         };
         let (whole, calls, _) = attempt(u64::MAX);
         whole?;
-        for nth in 0..calls {
+        let made = made.get();
+        for nth in first..calls {
             let (recorded, _, alive) = attempt(nth);
             let found = match recorded {
                 _ if !alive.is_empty() => format!("left alive {alive:?}"),
@@ -56,7 +65,7 @@ impl Host<'_> {
             };
             return Err(format!("{road:?}: call {nth}, {}, failed: {found}", shim.failed()).into());
         }
-        Ok(calls)
+        Ok((calls.saturating_sub(first), made))
     }
 }
 

@@ -169,6 +169,11 @@ impl Shim {
         watch(|watch| watch.failing = Some((0, u64::MAX, vk::Result::ERROR_DEVICE_LOST)));
     }
 
+    /// Calls that could have failed since [`Shim::fail`].
+    pub fn fallible(&self) -> u64 {
+        watch(|watch| watch.fallible)
+    }
+
     /// Nothing fails any more; the number of calls that could have failed since [`Shim::fail`].
     pub fn heal(&self) -> u64 {
         watch(|watch| {
