@@ -13,7 +13,7 @@ use airglow_fog::{Background, Distant, Fog, FogError, Seen, Settings};
 use airglow_graph::{Access, State};
 use airglow_tests::device::fixture_with;
 
-#[path = "../tests/maps/mod.rs"]
+#[path = "../tests/gpu/maps.rs"]
 mod maps;
 
 /// A sky with a small sun.

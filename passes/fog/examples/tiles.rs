@@ -16,7 +16,7 @@ use airglow_tests::device::fixture_with;
 use glam::DVec3;
 
 #[expect(dead_code, reason = "the example draws another picture than the tests")]
-#[path = "../tests/images/mod.rs"]
+#[path = "../tests/gpu/images.rs"]
 mod images;
 
 const SIDE: u32 = 512;

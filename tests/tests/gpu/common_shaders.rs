@@ -1,8 +1,6 @@
 //! The functions that hosts may copy (`shaders/glsl/common`), run on the device and compared with f64. The rotation
 //! and the product are compared where a pass runs them.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
-
 use airglow_gpu::{Binding, BindingDesc, BindingKind, ComputePipelineDesc, Label, Location};
 use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::{cube, equirect};

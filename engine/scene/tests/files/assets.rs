@@ -1,11 +1,8 @@
 //! The files that the repository ships load, whole and without a word.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
-
-mod support;
-
+use crate::support;
+use crate::support::asset;
 use airglow_scene::{LightKind, MaterialClass, Quality, image_io, load, luminance};
-use support::asset;
 
 #[test]
 fn meshes_have_the_stated_sizes() {

@@ -1,14 +1,10 @@
 //! glTF files made in memory: what is read, and what is said about what is not.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
-
-mod support;
-
+use crate::support::{Model, U8, U16, full_model, put};
 use airglow_scene::{AlphaMode, ChannelValues, Encoding, LightKind, MaterialClass, Wrap};
 use base64::Engine;
 use glam::{Mat4, Vec3};
 use serde_json::json;
-use support::{Model, U8, U16, full_model, put};
 
 fn messages(scene: &airglow_scene::Scene) -> String {
     scene.warnings.iter().map(|warning| format!("{warning}\n")).collect()

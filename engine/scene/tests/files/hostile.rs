@@ -1,16 +1,13 @@
 //! Thousands of broken files: each is read or refused, none panics. Byte-wise changes and truncations for every
 //! format, and changes to the JSON of glTF files that stay JSON.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
-
-mod support;
-
+use crate::support;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use crate::support::{asset, full_model, glb, put};
 use airglow_scene::{FloatImage, image_io};
 use serde_json::{Value, json};
-use support::{asset, full_model, glb, put};
 
 /// A small generator (Marsaglia's xorshift64*), so that a failure can be repeated.
 struct Random(u64);

@@ -1,11 +1,7 @@
 //! Pictures on disk: what is written is read back, and what cannot be radiance is refused.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
-
-mod support;
-
+use crate::support::put;
 use airglow_scene::{FloatImage, SceneError, image_io};
-use support::put;
 
 fn picture() -> FloatImage {
     let value = |i: usize| [i as f32, 1e5 / (i + 1) as f32, 1e-6 * i as f32];

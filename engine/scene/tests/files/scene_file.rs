@@ -1,15 +1,11 @@
 //! Scene files: what the README promises, line by line.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "tests fail by panicking")]
-
-mod support;
-
+use crate::support::{full_model, put};
 use airglow_scene::{
     EmitterShape, Exposure, FloatImage, LightKind, Quality, Scene, SceneError, Shadow, Storage, image_io,
     load,
 };
 use glam::Vec3;
-use support::{full_model, put};
 use tempfile::TempDir;
 
 /// A folder with `model.glb` and `sky.exr` (4 x 2, one pixel of 100).

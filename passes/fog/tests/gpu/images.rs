@@ -1,5 +1,7 @@
 //! What the tests draw the pass over.
 
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
 use airglow_fog::{ACCESSES, Bindings, Pass};
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
 use airglow_gpu::{Image, Label, Location};

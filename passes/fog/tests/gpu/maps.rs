@@ -1,5 +1,7 @@
 //! Maps of environments on the device.
 
+#![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
+
 use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageLayout, ImageUsageFlags};
 use airglow_gpu::{Image, Label, Location};
 use airglow_graph::{Access, BufferDesc, ImageDesc, State};

@@ -1,7 +1,5 @@
 //! Small glTF files made in memory.
 
-#![allow(dead_code, reason = "each test file uses its own part")]
-
 use std::path::PathBuf;
 
 use airglow_scene::{Scene, SceneError};
@@ -11,7 +9,6 @@ use tempfile::TempDir;
 pub const FLOAT: u32 = 5126;
 pub const U8: u32 = 5121;
 pub const U16: u32 = 5123;
-pub const U32: u32 = 5125;
 
 /// A glTF document and its one buffer.
 pub struct Model {
