@@ -1,5 +1,6 @@
 //! `cargo run --release -p airglow-shadow --example exponentials`: error of every exponential against the exact
-//! projection of binary visibility, over the families of blockers, in f64.
+//! projection of binary visibility, over the families of blockers, in f64; then that of the exact exponential, and the longest
+//! logarithm, over the clip of eigenvalues.
 
 use airglow_shadow::families::FAMILIES;
 use airglow_shadow::reference::{Reference, rms, truth};
@@ -7,6 +8,9 @@ use airglow_shadow::{Exponential, ShadowError};
 
 /// Scenes of a family.
 const SCENES: u32 = 60;
+/// Clips of eigenvalues, and scenes of each.
+const CLIPS: [f64; 6] = [0.001, 0.005, 0.01, 0.02, 0.05, 0.1];
+const CLIP_SCENES: u32 = 12;
 /// Degree of the rule the truth is integrated by.
 const DEGREE: usize = 300;
 
@@ -52,6 +56,33 @@ fn main() -> Result<(), ShadowError> {
                 println!("    {name:16} {mean:.4}  {largest:.4}");
             }
         }
+    }
+    for order in [4, 6] {
+        clips(order)?;
+    }
+    Ok(())
+}
+
+/// The exact exponential over the clip.
+fn clips(order: usize) -> Result<(), ShadowError> {
+    println!(
+        "order {order}: mean RMS error of the exact exponential, largest |f^|, {CLIP_SCENES} scenes, by clip {CLIPS:?}"
+    );
+    for family in FAMILIES {
+        let mut line = String::new();
+        for clip in CLIPS {
+            let reference = Reference::with_clip(order, clip)?;
+            let (mut error, mut norm) = (0.0, 0.0_f64);
+            for scene in 0..CLIP_SCENES {
+                let caps = family.scene(scene)?;
+                let logarithm = reference.log_visibility(&caps)?;
+                let found = reference.evaluator().exponential(Exponential::Operator, &logarithm)?;
+                error += rms(&found, &truth(order, DEGREE, &caps)?) / f64::from(CLIP_SCENES);
+                norm = norm.max(logarithm[1..].iter().map(|f| f * f).sum::<f64>().sqrt());
+            }
+            line += &format!("  {error:.4} {norm:5.1}");
+        }
+        println!("  {:20}{line}", family.name);
     }
     Ok(())
 }

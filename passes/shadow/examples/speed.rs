@@ -1,4 +1,4 @@
-//! `cargo run --release -p airglow-shadow --example speed`: on the device that tests use, time and error of the sum of
+//! `cargo run --release -p airglow-shadow --example speed [ORDER [SPHERES]]`: on the device that tests use, time and error of the sum of
 //! logarithms with one exponential, and of chained products, over 1 to 200 blockers at orders 3 to 6; time of each generated
 //! product and square, and how long the driver compiles each kernel.
 
@@ -69,10 +69,13 @@ fn main() -> Result<(), ShadowError> {
         fixture.device().run(fixture.context(), |recorder| record(recorder))
     };
     let bench = Bench { context: fixture.context(), run: &run };
-    products(&bench)?;
+    // One order and one number of spheres, or all.
+    let chosen: Vec<usize> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
+    let wanted = |place: usize, value: usize| chosen.get(place).is_none_or(|chosen| *chosen == value);
     let positions = ground();
-    for order in 3..=6 {
-        for count in [1, 5, 15, 60, 200] {
+    for order in (3..=6).filter(|order| wanted(0, *order)) {
+        products(&bench, order)?;
+        for count in [1, 5, 15, 60, 200].into_iter().filter(|count| wanted(1, *count)) {
             scene(&bench, order, &figure(count), &positions)?;
         }
     }
@@ -80,20 +83,18 @@ fn main() -> Result<(), ShadowError> {
 }
 
 /// Time of products and squares.
-fn products(bench: &Bench<'_>) -> Result<(), ShadowError> {
-    println!("order  kernel   ns a row   first run, ms (driver's compiler)");
-    for order in 3..=6 {
-        let rows: Vec<f32> = (0..ROWS * order * order)
-            .map(|i| if i % (order * order) == 0 { 3.5 } else { ((i * 37 % 101) as f32 - 50.0) * 1e-5 })
-            .collect();
-        for (name, kernel) in
-            [("product", RowKernel::Product as fn(u32) -> RowKernel), ("square", RowKernel::Square)]
-        {
-            let (_, one) = bench.rows(order, kernel(1), &rows, RUNS)?;
-            let (_, many) = bench.rows(order, kernel(9), &rows, RUNS)?;
-            let each = (least(&many) - least(&one)) / (8 * ROWS) as f64;
-            println!("{order}      {name:8} {:8.1}   {:8.1}", 1e9 * each, 1e3 * one[0].as_secs_f64());
-        }
+fn products(bench: &Bench<'_>, order: usize) -> Result<(), ShadowError> {
+    println!("order {order}: kernel, ns a row, first run ms (driver's compiler)");
+    let rows: Vec<f32> = (0..ROWS * order * order)
+        .map(|i| if i % (order * order) == 0 { 3.5 } else { ((i * 37 % 101) as f32 - 50.0) * 1e-5 })
+        .collect();
+    for (name, kernel) in
+        [("product", RowKernel::Product as fn(u32) -> RowKernel), ("square", RowKernel::Square)]
+    {
+        let (_, one) = bench.rows(order, kernel(1), &rows, RUNS)?;
+        let (_, many) = bench.rows(order, kernel(9), &rows, RUNS)?;
+        let each = (least(&many) - least(&one)) / (8 * ROWS) as f64;
+        println!("  {name:16} {:9.1}  {:8.1}", 1e9 * each, 1e3 * one[0].as_secs_f64());
     }
     Ok(())
 }

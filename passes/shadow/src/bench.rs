@@ -108,17 +108,14 @@ impl Bench<'_> {
             RowKernel::Square(repeat) => (Program::without_constants(Kind::Square), repeat),
         };
         let spirv = kernels::rows(program.kind, order).ok_or(ShadowError::Order { order })?;
-        let bindings = if program.reads_linear() { &ROW_BINDINGS[..] } else { &ROW_BINDINGS[..2] };
+        let table = match program.table(&Tables::new(order, CLIP)?) {
+            Some((values, end)) => Some((self.upload("table", &values)?, end)),
+            None => None,
+        };
+        let bindings = if table.is_some() { &ROW_BINDINGS[..] } else { &ROW_BINDINGS[..2] };
         let push_constant_size = size_of::<RowConstants>() as u32;
         let desc = ComputePipelineDesc { name: "shadow rows", spirv: &spirv, bindings, push_constant_size };
         let pipeline = self.context.create_compute_pipeline(&desc)?;
-        let linear = match program.reads_linear() {
-            true => {
-                let tables = Tables::new(order, CLIP)?;
-                Some((self.upload("linear", &tables.linear)?, tables.linear_end))
-            }
-            false => None,
-        };
         let (mut results, mut times) = (Vec::with_capacity(rows.len()), Vec::new());
         for rows in rows.chunks(ROWS * width) {
             let count = (rows.len() / width) as u32;
@@ -129,15 +126,15 @@ impl Bench<'_> {
                 norm: program.norm,
                 whole: program.whole,
                 repeat,
-                end: linear.as_ref().map_or(1.0, |(_, end)| *end),
+                end: table.as_ref().map_or(1.0, |(_, end)| *end),
             };
             for _ in 0..repeats.max(1) {
                 let begin = Instant::now();
                 (self.run)(&mut |recorder| {
                     let [a, b] = [Binding::storage(0, &input), Binding::storage(1, &output)];
-                    match &linear {
-                        Some((linear, _)) => {
-                            recorder.bind_compute(&pipeline, &[a, b, Binding::storage(2, linear)])?;
+                    match &table {
+                        Some((table, _)) => {
+                            recorder.bind_compute(&pipeline, &[a, b, Binding::storage(2, table)])?;
                         }
                         None => recorder.bind_compute(&pipeline, &[a, b])?,
                     }
@@ -172,8 +169,8 @@ impl Bench<'_> {
     pub fn shadow(&self, settings: Settings, kernel: SphereKernel) -> Result<Shadow, ShadowError> {
         match kernel {
             SphereKernel::Pass => Shadow::new(self.context, settings),
-            SphereKernel::Products => Shadow::with_kind(self.context, settings, Kind::Products),
-            SphereKernel::Logarithm => Shadow::with_kind(self.context, settings, Kind::Logarithm),
+            SphereKernel::Products => Shadow::products(self.context, settings),
+            SphereKernel::Logarithm => Shadow::logarithm(self.context, settings),
         }
     }
 
@@ -181,28 +178,38 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// As [`Shadow::receivers`] and [`Blockers::set`].
-    pub fn frame(
-        &self,
-        shadow: &Shadow,
-        scene: &Scene<'_>,
-        repeats: usize,
-    ) -> Result<Frame, ShadowError> {
-        let receivers = shadow.receivers(self.context, "receivers", scene.positions)?;
+    pub fn frame(&self, shadow: &Shadow, scene: &Scene<'_>, repeats: usize) -> Result<Frame, ShadowError> {
         let blockers = Blockers::default();
         blockers.set(scene.spheres, DMat4::IDENTITY)?;
+        self.blocked(shadow, scene.positions, scene.normals, &blockers, repeats)
+    }
+
+    /// Runs a pass over receivers with blockers as they are, `repeats` times.
+    ///
+    /// # Errors
+    /// As [`Shadow::receivers`].
+    pub fn blocked(
+        &self,
+        shadow: &Shadow,
+        positions: &[[f32; 3]],
+        normals: Option<&[[f32; 3]]>,
+        blockers: &Blockers,
+        repeats: usize,
+    ) -> Result<Frame, ShadowError> {
+        let receivers = shadow.receivers(self.context, "receivers", positions)?;
         let bytes = receivers.visibility_bytes(shadow.settings().order);
         let visibility = self.scratch("visibility", bytes as usize)?;
         let records = self.scratch("records", receivers.record_bytes() as usize)?;
         let bindings = Bindings {
-            positions: (&self.upload("positions", scene.positions)?).into(),
-            normals: scene.normals.map(|n| self.upload("normals", n)).transpose()?.as_ref().map(Into::into),
+            positions: (&self.upload("positions", positions)?).into(),
+            normals: normals.map(|n| self.upload("normals", n)).transpose()?.as_ref().map(Into::into),
             visibility: (&visibility).into(),
             records: (&records).into(),
         };
         let mut times = Vec::new();
         for _ in 0..repeats.max(1) {
             let begin = Instant::now();
-            (self.run)(&mut |recorder| shadow.record(recorder, &receivers, &blockers, &bindings))?;
+            (self.run)(&mut |recorder| shadow.record(recorder, &receivers, blockers, &bindings))?;
             times.push(begin.elapsed());
         }
         let counts = Counts::of(&self.read::<[u32; 2]>(&records)?);

@@ -4,66 +4,120 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DMat3, DMat4};
 
+use crate::spheres::Node;
 use crate::{ShadowError, Sphere};
 
-/// Most spheres of one instance's frame: 16 KiB, the smallest uniform range of any device.
-pub const MAX_SPHERES: usize = 1024;
+/// Nodes of a range: 16 KiB of spheres, the smallest uniform range of any device.
+pub(crate) const RANGE: usize = 1024;
+/// Most spheres of one instance's frame, with the nodes of their hierarchy.
+pub const MAX_SPHERES: usize = 16 * RANGE;
 
 /// The spheres that a pass reads when it is recorded. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub struct Blockers(Arc<Mutex<Vec<[f32; 4]>>>);
+pub struct Blockers(Arc<Mutex<Vec<Range>>>);
+
+/// What one uniform range holds, in the space of the receivers: always [`RANGE`] of each.
+#[derive(Clone, Debug)]
+pub(crate) struct Range {
+    /// Centre and radius.
+    pub spheres: Vec<[f32; 4]>,
+    /// Ratio, place of the holder or -1, 1 where it holds others.
+    pub nodes: Vec<[f32; 4]>,
+    count: usize,
+}
+
+impl Range {
+    fn new() -> Self {
+        Self { spheres: vec![[0.0; 4]; RANGE], nodes: vec![[0.0; 4]; RANGE], count: 0 }
+    }
+
+    /// Nodes.
+    pub(crate) fn len(&self) -> usize {
+        self.count
+    }
+
+    fn push(&mut self, sphere: [f32; 4], node: [f32; 4]) {
+        if let (Some(to), Some(of)) = (self.spheres.get_mut(self.count), self.nodes.get_mut(self.count)) {
+            (*to, *of) = (sphere, node);
+            self.count += 1;
+        }
+    }
+}
 
 impl Blockers {
-    /// Sets the spheres from the next recording on. `receiver_from_world` takes them to the object space of the receivers:
-    /// a rotation or mirroring, a uniform scale, a translation. Spheres of radius 0 block nothing.
+    /// Sets the spheres from the next recording on, without hierarchy. `receiver_from_world` takes them to the object space
+    /// of the receivers: a rotation or mirroring, a uniform scale, a translation. Spheres of radius 0 block nothing.
     ///
     /// # Errors
-    /// [`ShadowError::Range`] for a sphere that is not finite or a negative radius, and for a matrix that makes a sphere
-    /// something else; [`ShadowError::Length`] for more than [`MAX_SPHERES`]. Nothing is changed then.
+    /// As [`Self::set_nodes`].
     pub fn set(&self, spheres: &[Sphere], receiver_from_world: DMat4) -> Result<(), ShadowError> {
-        if spheres.len() > MAX_SPHERES {
-            let (what, expected, actual) = ("spheres, at most", MAX_SPHERES, spheres.len());
+        let nodes: Vec<Node> = spheres.iter().map(|sphere| Node::alone(*sphere)).collect();
+        self.set_nodes(&nodes, receiver_from_world)
+    }
+
+    /// Sets the nodes of hierarchies, each after the one that holds it and before that one's next neighbour, as
+    /// [`Hierarchy::posed`](crate::spheres::Hierarchy::posed) gives them; those of several sets may follow one another.
+    ///
+    /// # Errors
+    /// [`ShadowError::Range`] for a sphere that is not finite, a negative radius, a ratio that is not 0 or more, a node
+    /// that holds fewer than it says, and for a matrix that makes a sphere something else; [`ShadowError::Length`] for more
+    /// than [`MAX_SPHERES`]. Nothing is changed then.
+    pub fn set_nodes(&self, nodes: &[Node], receiver_from_world: DMat4) -> Result<(), ShadowError> {
+        if nodes.len() > MAX_SPHERES {
+            let (what, expected, actual) = ("spheres, at most", MAX_SPHERES, nodes.len());
             return Err(ShadowError::Length { what, expected, actual });
         }
         let scale = uniform_scale(DMat3::from_mat4(receiver_from_world))?;
-        for sphere in spheres {
-            if !sphere.center.is_finite() {
-                let value = sphere.center.x + sphere.center.y + sphere.center.z;
-                return Err(ShadowError::Range {
-                    what: "the centre of a sphere",
-                    value,
-                    range: "finite numbers",
-                });
-            }
-            if !(sphere.radius >= 0.0 && sphere.radius.is_finite()) {
-                let value = sphere.radius;
-                return Err(ShadowError::Range { what: "the radius of a sphere", value, range: "0 or more" });
-            }
+        for (at, node) in nodes.iter().enumerate() {
+            node.check(nodes.len() - at)?;
         }
         let moved = |sphere: &Sphere| {
             let center = receiver_from_world.transform_point3(sphere.center);
             center.extend(scale * sphere.radius).as_vec4().to_array()
         };
-        let mut held = self.lock();
-        held.clear();
-        held.extend(spheres.iter().map(moved));
+        *self.lock() = packed(nodes, moved);
         Ok(())
     }
 
     /// Whether nothing blocks.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.lock().iter().all(|sphere| sphere[3] <= 0.0)
+        self.lock().iter().all(|range| range.spheres.iter().all(|sphere| sphere[3] <= 0.0))
     }
 
-    /// Reads the spheres: centre and radius.
-    pub(crate) fn with<T>(&self, read: impl FnOnce(&[[f32; 4]]) -> T) -> T {
-        read(&self.lock())
+    /// The ranges to be dispatched one after the other: one at least.
+    pub(crate) fn ranges(&self) -> Vec<Range> {
+        let held = self.lock();
+        if held.is_empty() { vec![Range::new()] } else { held.clone() }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Vec<[f32; 4]>> {
+    fn lock(&self) -> MutexGuard<'_, Vec<Range>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Nodes in ranges. A range holds whole subtrees: a node whose own is larger than what is left of a range begins the next
+/// one, and one whose own no range holds is left out, so that what it holds is never stood for by it.
+fn packed(nodes: &[Node], moved: impl Fn(&Sphere) -> [f32; 4]) -> Vec<Range> {
+    let mut ranges = Vec::new();
+    let mut range = Range::new();
+    // Ends of the subtrees a node lies in, and where their nodes stand.
+    let mut holders: Vec<(usize, f32)> = Vec::new();
+    for (at, node) in nodes.iter().enumerate() {
+        holders.retain(|(end, _)| at < *end);
+        if node.subtree > RANGE {
+            continue;
+        }
+        if holders.is_empty() && range.count + node.subtree > RANGE {
+            ranges.push(std::mem::replace(&mut range, Range::new()));
+        }
+        let holder = holders.last().map_or(-1.0, |(_, place)| *place);
+        let holds = if node.subtree > 1 { 1.0 } else { 0.0 };
+        holders.push((at + node.subtree, range.count as f32));
+        range.push(moved(&node.sphere), [node.ratio as f32, holder, holds, 0.0]);
+    }
+    ranges.push(range);
+    ranges
 }
 
 /// The factor of all lengths.
@@ -92,10 +146,9 @@ mod tests {
         let matrix =
             DMat4::from_scale_rotation_translation(DVec3::splat(2.0), turn, DVec3::new(0.0, 0.0, 5.0));
         blockers.set(&[Sphere { center: DVec3::X, radius: 0.5 }], matrix).unwrap();
-        blockers.with(|spheres| {
-            let expected = [0.0, 2.0, 5.0, 1.0];
-            assert!(spheres[0].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{spheres:?}");
-        });
+        let spheres = &blockers.ranges()[0].spheres;
+        let expected = [0.0, 2.0, 5.0, 1.0];
+        assert!(spheres[0].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{:?}", spheres[0]);
         assert!(!blockers.is_empty());
         blockers.set(&[Sphere { center: DVec3::X, radius: 0.0 }], DMat4::IDENTITY).unwrap();
         assert!(blockers.is_empty());
@@ -117,6 +170,6 @@ mod tests {
             assert!(blockers.set(&[good], bad).is_err(), "{bad:?}");
         }
         assert!(blockers.set(&vec![good; MAX_SPHERES + 1], DMat4::IDENTITY).is_err());
-        blockers.with(|spheres| assert_eq!(spheres.len(), 1));
+        assert_eq!(blockers.ranges()[0].len(), 1);
     }
 }

@@ -3,12 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use airglow_math::sh::zonal::coefficients_from_factors;
+
 use crate::bench::{Bench, RowKernel, Scene, SphereKernel};
 use crate::exponential::{Evaluator, Exponential};
 use crate::logarithm::{CLIP, Logarithm};
 use crate::reference::{caps, truth};
 use crate::settings::Settings;
-use crate::table::{ENTRIES, Tables};
+use crate::table::{Tables, looked_up};
 use crate::{ShadowError, Sphere, check_order, circle};
 
 /// Degree of the rule that the truth of spheres is integrated by.
@@ -181,30 +183,16 @@ pub fn circle(order: usize, angular_radius: f64) -> Result<[Evaluated; 2], Shado
     check_order(order)?;
     let height = circle::height(angular_radius)?;
     let tables = Tables::new(order, CLIP)?;
-    let mut visibility = looked_up(order, &tables.visibility, height)?;
+    let zonal = |table: &[[u32; 4]]| coefficients_from_factors(&looked_up(order, table, height));
+    let mut visibility = zonal(&tables.visibility)?;
     visibility[0] += crate::exponential::ONE;
     Ok([
         Evaluated { values: visibility, reference: circle::visibility(order, height)? },
         Evaluated {
-            values: looked_up(order, &tables.logarithm, height)?,
+            values: zonal(&tables.logarithm)?,
             reference: Logarithm::new(order, CLIP)?.of_cap(height)?,
         },
     ])
-}
-
-/// A table at a height, as the kernels read it; zonal coefficients.
-fn looked_up(order: usize, table: &[[f32; 4]], height: f64) -> Result<Vec<f64>, ShadowError> {
-    let parts = order.div_ceil(4);
-    let steps = ENTRIES / parts - 1;
-    let place = height * steps as f64;
-    let entry = (place as usize).min(steps - 1);
-    let t = place - entry as f64;
-    let value = |entry: usize, l: usize| {
-        table.get(entry * parts + l / 4).map_or(0.0, |vector| f64::from(vector[l % 4]))
-    };
-    let factor = |l: usize| height * ((1.0 - t) * value(entry, l) + t * value(entry + 1, l));
-    let factors: Vec<f64> = (0..order).map(factor).collect();
-    Ok(airglow_math::sh::zonal::coefficients_from_factors(&factors)?)
 }
 
 /// `sh-log`: the logarithm that the tables are made with. It is made on the CPU; the reference is the same function, its

@@ -10,15 +10,13 @@ use airglow_math::sh::product::TripleProduct;
 use crate::ShadowError;
 use crate::eigen;
 use crate::linear::Linear;
+use crate::polynomial::{Interval, Polynomial, normalized};
 
 /// `sqrt(4 pi)`, the first coefficient of the constant 1.
 pub(crate) const ONE: f64 = 3.544_907_701_811_032;
 
 /// Largest degree of a series.
 pub const MAX_DEGREE: usize = 32;
-
-/// Norm above which [`Exponential::Adaptive`] scales and squares: no single sphere has a longer logarithm.
-pub const ADAPTIVE_NORM: f64 = 7.0;
 
 /// A way to the exponential.
 #[derive(Default, Clone, Copy, Debug, PartialEq)]
@@ -41,9 +39,9 @@ pub enum Exponential {
         /// Largest norm of what the series is given, above 0.
         norm: f64,
     },
-    /// The default: as [`Self::Horner`], scaled to a norm of at most [`ADAPTIVE_NORM`], with the degree
-    /// `ceil(2 + 5/2 |f^|)` of what is left of the norm. A squaring cuts off more than a step of the series does, so that
-    /// the few products of a small vector come nearer to [`Self::Operator`] than squarings.
+    /// The default: by Horner's rule the polynomial of the least degree that is within 2e-3 of the exponential wherever
+    /// the product matrix may have an eigenvalue, by a bound of them from mean and norm; squared only where that is more
+    /// than 32 wide. A squaring cuts off more than a step of a polynomial does.
     #[default]
     Adaptive,
     /// OL: `a(|f^|) 1 + b(|f^|) f^`.
@@ -92,9 +90,7 @@ impl Evaluator {
             Exponential::Horner { degree, norm } => {
                 self.squared(f, norm, |scaled| self.horner(degree, scaled))
             }
-            Exponential::Adaptive => self.squared(f, ADAPTIVE_NORM, |scaled| {
-                self.horner((2.0 + 2.5 * without_mean(scaled)).ceil() as usize, scaled)
-            }),
+            Exponential::Adaptive => self.polynomial(f),
             Exponential::OptimalLinear => {
                 self.squared(f, f64::INFINITY, |scaled| Ok(self.linear.apply(scaled)))
             }
@@ -141,6 +137,28 @@ impl Evaluator {
             g = self.product(f, &g)?;
             g.iter_mut().for_each(|value| *value /= k as f64);
             g[0] += ONE;
+        }
+        Ok(g)
+    }
+
+    /// The polynomial of the vector's own interval.
+    fn polynomial(&self, f: &[f64]) -> Result<Vec<f64>, ShadowError> {
+        let interval = |f: &[f64]| Interval::new(self.product.order(), f[0] / ONE, without_mean(f));
+        let squarings = interval(f)?.squarings();
+        let scale = (-f64::from(squarings)).exp2();
+        let scaled: Vec<f64> = f.iter().map(|value| scale * value).collect();
+        let interval = interval(&scaled)?;
+        let Polynomial { half, coefficients } = Polynomial::for_half(interval.half);
+        let t = normalized(&scaled, interval, half);
+        let mut g = vec![0.0; f.len()];
+        for coefficient in coefficients.iter().rev() {
+            g = self.product(&t, &g)?;
+            g[0] += coefficient * ONE;
+        }
+        let factor = interval.top.exp();
+        g.iter_mut().for_each(|value| *value *= factor);
+        for _ in 0..squarings {
+            g = self.product(&g, &g)?;
         }
         Ok(g)
     }
@@ -239,7 +257,7 @@ mod tests {
                 (Exponential::ScaledSeries { degree: 9 }, 1e-7),
                 (Exponential::ScaledSeries { degree: 2 }, 1e-3),
                 (Exponential::Horner { degree: 9, norm: 2.0 }, 1e-13),
-                (Exponential::Adaptive, 1e-4),
+                (Exponential::Adaptive, 1e-2),
                 (Exponential::OptimalLinear, 2e-2),
                 (Exponential::Hybrid { threshold: 0.25 }, 2e-2),
             ] {

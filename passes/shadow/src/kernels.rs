@@ -5,6 +5,8 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::exponential::Exponential;
 use crate::order::MIN_ORDER;
+use crate::polynomial;
+use crate::table::{LINEAR_STEPS, Tables};
 
 /// The modules of a kernel, by order.
 type Orders = [&'static [u8]; 4];
@@ -23,13 +25,11 @@ macro_rules! orders {
 static SERIES: Orders = orders!("visibility.EXPONENTIAL0");
 static SERIES_NORMALS: Orders = orders!("visibility.EXPONENTIAL0.NORMALS");
 static SQUARES: Orders = orders!("visibility.EXPONENTIAL1");
-static LINEAR: Orders = orders!("visibility.EXPONENTIAL2");
+static PIXELS: Orders = orders!("pixels.EXPONENTIAL0.NORMALS");
 static PRODUCTS: Orders = orders!("visibility.EXPONENTIAL7");
-static LOGARITHM: Orders = orders!("visibility.EXPONENTIAL8");
-static ROWS: [Orders; 7] = [
+static ROWS: [Orders; 6] = [
     orders!("rows.EXPONENTIAL0"),
     orders!("rows.EXPONENTIAL1"),
-    orders!("rows.EXPONENTIAL2"),
     orders!("rows.EXPONENTIAL3"),
     orders!("rows.EXPONENTIAL4"),
     orders!("rows.EXPONENTIAL5"),
@@ -40,38 +40,52 @@ const fn storage(binding: u32) -> BindingDesc {
     BindingDesc::new(binding, BindingKind::StorageBuffer)
 }
 
-/// Bindings of `visibility.comp`: positions, slots, spheres, factors, visibility, records, normals, linear. Normals and the
-/// last are there where the kernel reads them.
-pub const VISIBILITY_BINDINGS: [BindingDesc; 8] = [
+const fn uniform(binding: u32) -> BindingDesc {
+    BindingDesc::new(binding, BindingKind::UniformBuffer)
+}
+
+/// Bindings of `visibility.comp`: positions, slots, spheres, factors, visibility, records, normals, table of the exponential,
+/// nodes. Normals and the table are there where the kernel reads them.
+pub const VISIBILITY_BINDINGS: [BindingDesc; 9] = [
     storage(0),
     storage(1),
-    BindingDesc::new(2, BindingKind::UniformBuffer),
-    BindingDesc::new(3, BindingKind::UniformBuffer),
+    uniform(2),
+    uniform(3),
     storage(4),
     storage(5),
     storage(6),
     storage(7),
+    uniform(8),
 ];
 
-/// Bindings of `rows.comp`: rows, results, and the table of the optimal linear exponential where it is read.
+/// Bindings of `rows.comp`: rows, results, and the table of the exponential where it is read.
 pub const ROW_BINDINGS: [BindingDesc; 3] = [storage(0), storage(1), storage(2)];
+
+/// Flag of [`VisibilityConstants`]: results are made ones that a visibility can have.
+pub const CLAMPED: u32 = 1;
+/// Flag: begins with the logarithm that the buffer holds.
+pub const CONTINUED: u32 = 2;
+/// Flag: ends without exponential.
+pub const LOGARITHM: u32 = 4;
 
 /// `Settings` of `visibility.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct VisibilityConstants {
-    /// Spheres of the frame.
-    pub sphere_count: u32,
-    /// Degree of the series; 0: by the norm.
+    /// Nodes of the range.
+    pub count: u32,
+    /// Degree of the series; 0: the polynomial of the vector's interval.
     pub degree: u32,
     /// Norm to scale to.
     pub norm: f32,
     /// Least height of a cap.
     pub reach: f32,
+    /// Height of a cap below which a node stands for what it holds.
+    pub cut: f32,
     /// Strength of the window.
     pub window: f32,
-    /// 1: clamped.
-    pub clamped: u32,
+    /// [`CLAMPED`], [`CONTINUED`], [`LOGARITHM`].
+    pub flags: u32,
     /// Largest norm of the table of the optimal linear exponential.
     pub end: f32,
     /// First cluster of the dispatch.
@@ -84,7 +98,7 @@ pub struct VisibilityConstants {
 pub struct RowConstants {
     /// Rows.
     pub count: u32,
-    /// Degree of the series; 0: by the norm.
+    /// Degree of the series; 0: the polynomial of the vector's interval.
     pub degree: u32,
     /// Norm to scale to.
     pub norm: f32,
@@ -96,20 +110,17 @@ pub struct RowConstants {
     pub end: f32,
 }
 
-/// What a kernel over receivers makes of the spheres.
+/// What a kernel makes of spheres or rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Series,
     Squares,
-    Linear,
     Factored,
     Operator,
     Product,
     Square,
     /// The rival: products of visibilities.
     Products,
-    /// The sum of logarithms.
-    Logarithm,
 }
 
 /// A kernel and its constants.
@@ -124,16 +135,17 @@ pub(crate) struct Program {
 impl Program {
     /// The program of an exponential.
     pub(crate) fn of(exponential: Exponential) -> Self {
+        let most = f64::from(f32::MAX);
         let (kind, degree, norm, whole) = match exponential {
-            Exponential::Adaptive => (Kind::Series, 0, crate::exponential::ADAPTIVE_NORM, 0),
-            Exponential::Series { degree } => (Kind::Series, degree, f64::from(f32::MAX), 1),
+            Exponential::Adaptive => (Kind::Series, 0, most, 0),
+            Exponential::Series { degree } => (Kind::Series, degree, most, 1),
             Exponential::ScaledSeries { degree: 2 } => (Kind::Squares, 2, 0.125, 0),
             Exponential::ScaledSeries { degree } => (Kind::Factored, degree, 0.125, 0),
             Exponential::Horner { degree: 2, norm } => (Kind::Squares, 2, norm, 0),
             Exponential::Horner { degree, norm } => (Kind::Series, degree, norm, 0),
-            Exponential::OptimalLinear => (Kind::Linear, 0, f64::from(f32::MAX), 0),
-            Exponential::Hybrid { threshold } => (Kind::Linear, 0, threshold, 0),
-            Exponential::Operator => (Kind::Operator, 0, f64::from(f32::MAX), 0),
+            Exponential::OptimalLinear => (Kind::Squares, 1, most, 0),
+            Exponential::Hybrid { threshold } => (Kind::Squares, 1, threshold, 0),
+            Exponential::Operator => (Kind::Operator, 0, most, 0),
         };
         Self { kind, degree: degree as u32, norm: norm as f32, whole }
     }
@@ -143,9 +155,15 @@ impl Program {
         Self { kind, degree: 0, norm: f32::MAX, whole: 0 }
     }
 
-    /// Whether it reads the table of the optimal linear exponential.
-    pub(crate) fn reads_linear(self) -> bool {
-        self.kind == Kind::Linear
+    /// The table its exponential reads, and where that ends; `None` where it reads none.
+    pub(crate) fn table(self, tables: &Tables) -> Option<(Vec<f32>, f32)> {
+        match (self.kind, self.degree) {
+            (Kind::Series, _) => Some((polynomial::table(), 1.0)),
+            (Kind::Squares, 1) => Some((tables.linear.as_flattened().to_vec(), tables.linear_end)),
+            // The series itself: both powers count as they are.
+            (Kind::Squares, _) => Some((vec![1.0; 2 * (LINEAR_STEPS + 1)], 1.0)),
+            _ => None,
+        }
     }
 }
 
@@ -155,12 +173,15 @@ pub(crate) fn visibility(kind: Kind, order: usize, normals: bool) -> Option<Vec<
         (Kind::Series, false) => &SERIES,
         (Kind::Series, true) => &SERIES_NORMALS,
         (Kind::Squares, false) => &SQUARES,
-        (Kind::Linear, false) => &LINEAR,
         (Kind::Products, false) => &PRODUCTS,
-        (Kind::Logarithm, false) => &LOGARITHM,
         _ => return None,
     };
     modules.get(order.checked_sub(MIN_ORDER)?).map(|bytes| words(bytes))
+}
+
+/// The kernel over pixels.
+pub(crate) fn pixels(order: usize) -> Option<Vec<u32>> {
+    PIXELS.get(order.checked_sub(MIN_ORDER)?).map(|bytes| words(bytes))
 }
 
 /// The kernel over rows; `None` where there is none.
@@ -168,21 +189,20 @@ pub(crate) fn rows(kind: Kind, order: usize) -> Option<Vec<u32>> {
     let place = match kind {
         Kind::Series => 0,
         Kind::Squares => 1,
-        Kind::Linear => 2,
-        Kind::Factored => 3,
-        Kind::Operator => 4,
-        Kind::Product => 5,
-        Kind::Square => 6,
-        Kind::Products | Kind::Logarithm => return None,
+        Kind::Factored => 2,
+        Kind::Operator => 3,
+        Kind::Product => 4,
+        Kind::Square => 5,
+        Kind::Products => return None,
     };
     ROWS.get(place)?.get(order.checked_sub(MIN_ORDER)?).map(|bytes| words(bytes))
 }
 
 /// Bindings of a kernel over receivers.
-pub(crate) fn visibility_bindings(program: Program, normals: bool) -> Vec<BindingDesc> {
+pub(crate) fn visibility_bindings(kind: Kind, normals: bool) -> Vec<BindingDesc> {
     let read = |desc: &BindingDesc| match desc.binding {
         6 => normals,
-        7 => program.reads_linear(),
+        7 => kind != Kind::Products,
         _ => true,
     };
     VISIBILITY_BINDINGS.into_iter().filter(read).collect()

@@ -18,6 +18,9 @@ pub struct Settings {
     /// Spheres that hide less of a whole cluster's sky than this share of a half space are left out; 0 to 1. Default 1e-5:
     /// a hundred of them dim the sky by a thousandth.
     pub reach: f64,
+    /// Nodes of a hierarchy of spheres that hide less of a whole cluster's sky than this share of a half space stand for
+    /// what they hold; 0 to 1. Default 0.03, a cap of 14 degrees; 0: spheres of the set itself alone.
+    pub cut: f64,
     /// Deringing: band l is divided by `1 + window l^2 (l + 1)^2`; 0 to 1. Default 0: off.
     pub window: f64,
     /// Results are made ones that a visibility can have. Default on, for a thousand blockers in one place.
@@ -34,6 +37,7 @@ impl Default for Settings {
             exponential: Exponential::default(),
             clip: CLIP,
             reach: 1e-5,
+            cut: 0.03,
             window: 0.0,
             clamp: true,
             normals: false,
@@ -54,6 +58,7 @@ impl Settings {
             false => Err(ShadowError::Range { what, value, range: "0 to 1" }),
         };
         unit("the reach", self.reach)?;
+        unit("the cut", self.cut)?;
         unit("the window", self.window)?;
         let kind = Program::of(self.exponential).kind;
         let known = match self.normals {
@@ -62,7 +67,7 @@ impl Settings {
         };
         let there = match kind {
             Kind::Series => true,
-            Kind::Squares | Kind::Linear => !self.normals,
+            Kind::Squares => !self.normals,
             _ => false,
         };
         match there {

@@ -8,12 +8,14 @@ use airglow_gpu::{
 use airglow_graph::{Access, BufferDesc};
 use bytemuck::Pod;
 
-use crate::blockers::{Blockers, MAX_SPHERES};
+use crate::blockers::{Blockers, Range};
 use crate::clusters::{self, CLUSTER};
-use crate::kernels::{self, Kind, Program, VISIBILITY_BINDINGS, VisibilityConstants};
+use crate::kernels::{
+    self, CLAMPED, CONTINUED, Kind, LOGARITHM, Program, VISIBILITY_BINDINGS, VisibilityConstants,
+};
 use crate::settings::Settings;
 use crate::table::Tables;
-use crate::{ShadowError, check_order};
+use crate::{Exponential, ShadowError, check_order};
 
 /// What the memory report charges this room's buffers to.
 const OWNER: &str = "shadow";
@@ -47,8 +49,10 @@ pub struct Shadow {
     program: Program,
     pipeline: ComputePipeline,
     factors: Buffer,
-    linear: Buffer,
-    linear_end: f32,
+    /// Of the exponential, and its end; `None` for the rival.
+    table: Option<(Buffer, f32)>,
+    /// Ends with the sum of the logarithms.
+    logarithm: bool,
 }
 
 /// Receivers of one mesh, in clusters. Clones share them.
@@ -101,9 +105,17 @@ impl Shadow {
         Self::with_program(context, settings, Program::of(settings.exponential))
     }
 
-    /// The pass with the kernel of `kind`: rivals and parts.
-    pub(crate) fn with_kind(context: &Context, settings: Settings, kind: Kind) -> Result<Self, ShadowError> {
-        Self::with_program(context, settings, Program::without_constants(kind))
+    /// The rival: products of the spheres' visibilities, one after the other.
+    pub(crate) fn products(context: &Context, settings: Settings) -> Result<Self, ShadowError> {
+        Self::with_program(context, settings, Program::without_constants(Kind::Products))
+    }
+
+    /// The pass without exponential.
+    pub(crate) fn logarithm(context: &Context, settings: Settings) -> Result<Self, ShadowError> {
+        Ok(Self {
+            logarithm: true,
+            ..Self::with_program(context, settings, Program::of(Exponential::Adaptive))?
+        })
     }
 
     fn with_program(context: &Context, settings: Settings, program: Program) -> Result<Self, ShadowError> {
@@ -115,7 +127,7 @@ impl Shadow {
         let desc = ComputePipelineDesc {
             name: "shadow visibility",
             spirv: &spirv,
-            bindings: &kernels::visibility_bindings(program, settings.normals),
+            bindings: &kernels::visibility_bindings(program.kind, settings.normals),
             push_constant_size: size_of::<VisibilityConstants>() as u32,
         };
         let pipeline = context.create_compute_pipeline(&desc)?;
@@ -125,8 +137,11 @@ impl Shadow {
             _ => &tables.logarithm,
         };
         let factors = upload(context, "factors", factors)?;
-        let linear = upload(context, "optimal linear", &tables.linear)?;
-        Ok(Self { settings, program, pipeline, factors, linear, linear_end: tables.linear_end })
+        let table = match program.table(&tables) {
+            Some((values, end)) => Some((upload(context, "exponential", &values)?, end)),
+            None => None,
+        };
+        Ok(Self { settings, program, pipeline, factors, table, logarithm: false })
     }
 
     /// What it was made for.
@@ -174,21 +189,45 @@ impl Shadow {
         long_enough(&bindings.positions, vectors)?;
         long_enough(&bindings.visibility, receivers.visibility_bytes(self.settings.order))?;
         long_enough(&bindings.records, receivers.record_bytes())?;
-        let mut all = [[0.0_f32; 4]; MAX_SPHERES];
-        let sphere_count = blockers.with(|spheres| {
-            all.iter_mut().zip(spheres).for_each(|(place, sphere)| *place = *sphere);
-            spheres.len() as u32
-        });
-        let spheres = recorder.upload(&all)?;
-        let always = [
+        let ranges = blockers.ranges();
+        if ranges.len() > 1 && self.program.kind == Kind::Products {
+            return Err(GpuError::misuse("the spheres of products", "more than one uniform range holds"));
+        }
+        for (at, range) in ranges.iter().enumerate() {
+            if at > 0 {
+                recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
+            }
+            self.record_range(recorder, receivers, range, bindings)?;
+            let flags = self.flags(at > 0, at + 1 < ranges.len());
+            let mut first = 0;
+            while first < receivers.clusters {
+                recorder.push_constants(&self.constants(range.len() as u32, flags, first))?;
+                let groups = (receivers.clusters - first).min(GROUPS);
+                recorder.dispatch([groups, 1, 1])?;
+                first += groups;
+            }
+        }
+        Ok(())
+    }
+
+    /// Binds what a dispatch over one range of spheres reads.
+    fn record_range(
+        &self,
+        recorder: &mut Recorder<'_>,
+        receivers: &Receivers,
+        range: &Range,
+        bindings: &Bindings,
+    ) -> Result<(), GpuError> {
+        let (spheres, nodes) = (recorder.upload(&range.spheres)?, recorder.upload(&range.nodes)?);
+        let mut all = vec![
             Binding::storage(0, &bindings.positions),
             Binding::storage(1, &receivers.slots),
             Binding::uniform(2, &spheres),
             Binding::uniform(3, &self.factors),
             Binding::storage(4, &bindings.visibility),
             Binding::storage(5, &bindings.records),
+            Binding::uniform(8, &nodes),
         ];
-        let [a, b, c, d, e, f] = always;
         if self.settings.normals {
             let Some(normals) = &bindings.normals else {
                 return Err(GpuError::misuse(
@@ -196,32 +235,31 @@ impl Shadow {
                     "not bound: the settings ask for them",
                 ));
             };
-            long_enough(normals, vectors)?;
-            recorder.bind_compute(&self.pipeline, &[a, b, c, d, e, f, Binding::storage(6, normals)])?;
-        } else if self.program.reads_linear() {
-            recorder.bind_compute(&self.pipeline, &[a, b, c, d, e, f, Binding::storage(7, &self.linear)])?;
-        } else {
-            recorder.bind_compute(&self.pipeline, &[a, b, c, d, e, f])?;
+            long_enough(normals, 12 * u64::from(receivers.count))?;
+            all.push(Binding::storage(6, normals));
         }
-        let mut first = 0;
-        while first < receivers.clusters {
-            recorder.push_constants(&self.constants(sphere_count, first))?;
-            let groups = (receivers.clusters - first).min(GROUPS);
-            recorder.dispatch([groups, 1, 1])?;
-            first += groups;
+        if let Some((table, _)) = &self.table {
+            all.push(Binding::storage(7, table));
         }
-        Ok(())
+        recorder.bind_compute(&self.pipeline, &all)
     }
 
-    fn constants(&self, sphere_count: u32, first: u32) -> VisibilityConstants {
+    fn flags(&self, continued: bool, goes_on: bool) -> u32 {
+        let flag = |flag, on| if on { flag } else { 0 };
+        let logarithm = goes_on || self.logarithm;
+        flag(CLAMPED, self.settings.clamp) | flag(CONTINUED, continued) | flag(LOGARITHM, logarithm)
+    }
+
+    fn constants(&self, count: u32, flags: u32, first: u32) -> VisibilityConstants {
         VisibilityConstants {
-            sphere_count,
+            count,
             degree: self.program.degree,
             norm: self.program.norm,
             reach: self.settings.reach as f32,
+            cut: self.settings.cut as f32,
             window: self.settings.window as f32,
-            clamped: u32::from(self.settings.clamp && self.program.kind != Kind::Logarithm),
-            end: self.linear_end,
+            flags,
+            end: self.table.as_ref().map_or(1.0, |(_, end)| *end),
             first,
         }
     }
@@ -236,7 +274,7 @@ fn long_enough(buffer: &BufferSlice, bytes: u64) -> Result<(), GpuError> {
 }
 
 /// A buffer of this room's, written once.
-fn upload<T: Pod>(context: &Context, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
+pub(crate) fn upload<T: Pod>(context: &Context, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
     let usage = BufferUsageFlags::STORAGE_BUFFER | BufferUsageFlags::UNIFORM_BUFFER;
     let desc = BufferDesc { size: size_of_val(values) as u64, usage };
     let buffer = context.create_buffer(Label::new(OWNER, name), &desc, Location::Upload)?;

@@ -3,8 +3,8 @@
 #ifndef SHADOW_CAP_GLSL
 #define SHADOW_CAP_GLSL
 
-// Axis of the cap of directions that the sphere hides, and 1 - cos of its angular radius in w, 0 to 1: 1, half of the sky,
-// from inside. Nothing is hidden by a sphere of radius 0. Distances from 1e-18 to 1e18.
+// Axis of the cap of directions that the sphere hides, and the square of the sine of its angular radius in w, 0 to 1: 1,
+// half of the sky, from inside. Nothing is hidden by a sphere of radius 0. Distances from 1e-18 to 1e18.
 vec4 shadow_cap(vec3 center, float radius, vec3 receiver)
 {
     vec3 towards = center - receiver;
@@ -13,9 +13,7 @@ vec4 shadow_cap(vec3 center, float radius, vec3 receiver)
     bool inside = !(square > 1e-37);
     float inverse = inversesqrt(max(square, 1e-37));
     float ratio = radius * inverse;
-    float sine2 = min(ratio * ratio, 1.0);
-    float height = sine2 / (1.0 + sqrt(1.0 - sine2));
-    return inside ? vec4(0.0, 0.0, 1.0, radius > 0.0 ? 1.0 : 0.0) : vec4(inverse * towards, height);
+    return inside ? vec4(0.0, 0.0, 1.0, radius > 0.0 ? 1.0 : 0.0) : vec4(inverse * towards, min(ratio * ratio, 1.0));
 }
 
 // The part of a sphere above the tangent plane of a receiver that a surface lies on: a sphere below the plane counts

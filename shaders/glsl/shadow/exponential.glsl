@@ -3,11 +3,11 @@
 // nothing overflows on the way.
 //
 // The includer defines ORDER, 3 to 6, and EXPONENTIAL:
-//   0  the series by Horner's rule; degree 0: a degree that follows the norm
-//   1  the series of degree 2, squarings
-//   2  optimal linear, squarings; the includer defines SHADOW_LINEAR(at), a and b of entry `at`, and SHADOW_LINEAR_END
+//   0  a polynomial by Horner's rule: of a degree, the series; degree 0: that of the vector's own interval, of the table
+//   1  the series of degree 2 or, degree 1, optimal linear, and squarings; a and b of the first powers from the table
 //   3  the factored series of equation 5.27
 //   4  the exponential of the product matrix, by steps of its series
+// For 0 and 1, SHADOW_TABLE(at), a float of the table of the exponential, and SHADOW_TABLE_END, where that of 1 ends.
 
 #ifndef SHADOW_EXPONENTIAL_GLSL
 #define SHADOW_EXPONENTIAL_GLSL
@@ -63,26 +63,65 @@ uint scale_down(inout float f[COUNT], Exponential how, out float mean, out float
 }
 
 #if EXPONENTIAL == 0
+// The largest eigenvalue of the product matrix of a vector without mean and of norm 1.
+const float BOUND = ORDER == 3 ? 0.4947 : ORDER == 4 ? 0.6873 : ORDER == 5 ? 0.8774 : 1.0633;
+
+// The interval that holds the eigenvalues of the product matrix: upper end and half of the width.
+vec2 eigenvalues(float mean, float norm)
+{
+    float reach = BOUND * norm;
+    float up = min(reach, max(0.2 - mean, 0.5 * reach));
+    return vec2(mean + up, 0.5 * (up + reach));
+}
+
 void exponential(inout float f[COUNT], Exponential how)
 {
-    float mean, norm;
-    uint squarings = scale_down(f, how, mean, norm);
-    uint degree = how.degree != 0u ? how.degree : uint(ceil(2.0 + 2.5 * min(norm, 100.0)));
+    uint degree = how.degree;
+    uint row = 0u;
+    uint squarings = 0u;
+    float norm, mean;
+    float begin; // of what the coefficients are scaled by
+    if (degree > 0u) {
+        squarings = scale_down(f, how, mean, norm);
+        begin = mean;
+        for (uint k = degree; k > 1u; --k) { begin /= float(k); }
+    } else {
+        mean = f[0] / ONE;
+        norm = without_mean(f);
+        vec2 interval = eigenvalues(mean, norm);
+        // No squarings where it is not finite either.
+        squarings = interval.y > 16.0 && interval.y < 1e30 ? uint(ceil(log2(interval.y / 16.0))) : 0u;
+        float scale = exp2(-float(squarings));
+        interval = eigenvalues(scale * mean, scale * norm);
+        float place = clamp(ceil(8.0 * log2(max(interval.y, 1e-30) / 16.0)) + 112.0, 0.0, 112.0);
+        row = 16u * uint(place);
+        degree = uint(SHADOW_TABLE(row + 15u));
+        float inverse = exp2((112.0 - place) / 8.0) / 16.0;
+        EACH(i) { f[i] *= scale * inverse; }
+        f[0] -= (interval.x * inverse - 1.0) * ONE;
+        begin = exp(interval.x);
+    }
     float g[COUNT];
     float h[COUNT];
-    float left[COUNT];
-    float last = mean / float(degree);
-    EACH(i) { g[i] = last * f[i]; }
-    g[0] += mean * ONE;
-    // Steps of the series, then squarings: one loop, so that the product stands in the program once.
+    // The two highest powers, then a product for each lower one, then squarings: one loop, so that the product stands in
+    // the program once.
+    bool series = how.degree > 0u;
+    float coefficient = series ? begin : begin * SHADOW_TABLE(row + degree);
+    EACH(i) { g[i] = coefficient * f[i]; }
+    coefficient = series ? coefficient * float(degree) : begin * SHADOW_TABLE(row + degree - 1u);
+    g[0] += coefficient * ONE;
     uint steps = degree - 1u;
     for (uint at = 0u; at < steps + squarings; ++at) {
-        bool series = at < steps;
-        EACH(i) { left[i] = series ? f[i] : g[i]; }
+        bool squaring = at >= steps;
+        float left[COUNT];
+        EACH(i) { left[i] = squaring ? g[i] : f[i]; }
         sh_product(left, g, h);
-        float factor = series ? 1.0 / float(degree - 1u - at) : 1.0;
-        EACH(i) { g[i] = factor * h[i]; }
-        g[0] += series ? mean * ONE : 0.0;
+        g = h;
+        if (!squaring) {
+            uint power = steps - 1u - at;
+            coefficient = series ? coefficient * float(power + 1u) : begin * SHADOW_TABLE(row + power);
+            g[0] += coefficient * ONE;
+        }
     }
     f = g;
 }
@@ -91,33 +130,22 @@ void exponential(inout float f[COUNT], Exponential how)
 {
     float mean, norm;
     uint squarings = scale_down(f, how, mean, norm);
+    float place = min(norm / SHADOW_TABLE_END, 1.0) * 256.0;
+    uint entry = 2u * min(uint(place), 255u);
+    float t = place - float(entry / 2u);
+    float a = mean * mix(SHADOW_TABLE(entry), SHADOW_TABLE(entry + 2u), t);
+    float b = mean * mix(SHADOW_TABLE(entry + 1u), SHADOW_TABLE(entry + 3u), t);
     float g[COUNT] = f;
     float h[COUNT];
-    for (uint at = 0u; at <= squarings; ++at) {
+    EACH(i) { f[i] *= b; }
+    f[0] += a * ONE;
+    // The square of the series first, then those that undo the scaling: one loop, as above.
+    uint steps = how.degree > 1u ? 1u : 0u;
+    for (uint at = 0u; at < steps + squarings; ++at) {
+        bool series = at < steps;
+        EACH(i) { g[i] = series ? g[i] : f[i]; }
         sh_square(g, h);
-        if (at == 0u) {
-            EACH(i) { g[i] = mean * (f[i] + 0.5 * h[i]); }
-            g[0] += mean * ONE;
-        } else {
-            g = h;
-        }
-    }
-    f = g;
-}
-#elif EXPONENTIAL == 2
-void exponential(inout float f[COUNT], Exponential how)
-{
-    float mean, norm;
-    uint squarings = scale_down(f, how, mean, norm);
-    float place = min(norm / SHADOW_LINEAR_END, 1.0) * 256.0;
-    uint entry = min(uint(place), 255u);
-    vec2 fit = mean * mix(SHADOW_LINEAR(entry), SHADOW_LINEAR(entry + 1u), place - float(entry));
-    EACH(i) { f[i] *= fit.y; }
-    f[0] += fit.x * ONE;
-    float h[COUNT];
-    for (uint at = 0u; at < squarings; ++at) {
-        sh_square(f, h);
-        f = h;
+        EACH(i) { f[i] = series ? f[i] + 0.5 * mean * h[i] : h[i]; }
     }
 }
 #elif EXPONENTIAL == 3
@@ -126,7 +154,7 @@ void exponential(inout float f[COUNT], Exponential how)
     float mean, norm;
     uint squarings = scale_down(f, how, mean, norm);
     float square[COUNT];
-    sh_square(f, square);
+    sh_product(f, f, square);
     float even[COUNT];
     float odd[COUNT];
     float power[COUNT] = square;
@@ -151,7 +179,7 @@ void exponential(inout float f[COUNT], Exponential how)
     sh_product(f, odd, h);
     EACH(i) { f[i] = mean * (even[i] + h[i]); }
     for (uint at = 0u; at < squarings; ++at) {
-        sh_square(f, h);
+        sh_product(f, f, h);
         f = h;
     }
 }

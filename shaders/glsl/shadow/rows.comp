@@ -3,12 +3,12 @@
 // Exponentials, products and squares on rows of coefficients, by the functions that the pass ships: for tests, evaluation
 // and timing. EXPONENTIAL as in exponential.glsl; 5: the product of the row with itself, 6: its square, each `repeat` times.
 
-#if EXPONENTIAL == 2
-layout(std430, set = 0, binding = 2) readonly buffer Linear {
-    vec2 values[257];
-} linear;
-#define SHADOW_LINEAR(at) linear.values[at]
-#define SHADOW_LINEAR_END settings.end
+#if EXPONENTIAL < 3
+layout(std430, set = 0, binding = 2) readonly buffer Table {
+    float values[];
+} table;
+#define SHADOW_TABLE(at) table.values[at]
+#define SHADOW_TABLE_END settings.end
 #endif
 
 layout(local_size_x = 64) in;

@@ -14,12 +14,11 @@ use airglow_gpu::{GpuError, Recorder};
 use airglow_math::sequence::{cosine_hemisphere, hammersley};
 use airglow_math::sh::{evaluate, product::TripleProduct, project};
 use airglow_scene::image_io::write_png;
-use airglow_shadow::bench::{Scene, SphereKernel};
 use airglow_shadow::reference::caps;
-use airglow_shadow::spheres::{FitSettings, fit, skinned, weights};
-use airglow_shadow::{Bench, Settings, Shadow, Sphere};
+use airglow_shadow::spheres::{FitSettings, Hierarchy, fit, skinned, weights};
+use airglow_shadow::{Bench, Blockers, Settings, Shadow, Sphere};
 use airglow_tests::device::fixture_with;
-use glam::{DVec3, Mat4};
+use glam::{DMat4, DVec3, Mat4};
 use view::{Picture, SIDE};
 
 /// Spheres of the figure.
@@ -140,34 +139,55 @@ fn main() -> Result<(), Box<dyn Error>> {
         fixture.device().run(fixture.context(), |recorder| record(recorder))
     };
     let bench = Bench { context: fixture.context(), run: &run };
-    let places = Scene { positions: &picture.places, normals: Some(&picture.normals), spheres: &spheres };
     let mut panels = Vec::new();
     for order in 3..=6 {
         let light = |channel: usize| project(order, 60, |direction| sky(direction)[channel]);
         let (light, tensor) = ([light(0)?, light(1)?, light(2)?], TripleProduct::new(order)?);
-        let settings = Settings { order, normals: true, ..Default::default() };
-        let frame = bench.spheres(settings, SphereKernel::Pass, &places, 3)?;
+        let plain = Hierarchy::without_ratios(&set.spheres)?;
+        let begin = Instant::now();
+        let corrected = Hierarchy::new(&set.spheres, order)?;
+        println!("order {order}: ratios in {:.1} s", begin.elapsed().as_secs_f64());
+        let ways = [
+            ("spheres alone", &plain, 0.0),
+            ("with ratios", &corrected, 0.0),
+            ("and a cut", &corrected, 0.03),
+        ];
+        for (name, hierarchy, cut) in ways {
+            let settings = Settings { order, cut, normals: true, ..Default::default() };
+            let blockers = Blockers::default();
+            blockers.set_nodes(&hierarchy.posed(&spheres)?, DMat4::IDENTITY)?;
+            let shadow = Shadow::new(bench.context, settings)?;
+            let frame = bench.blocked(&shadow, &picture.places, Some(&picture.normals), &blockers, 3)?;
+            let mut found = Vec::new();
+            for (values, normal) in frame.values.chunks(order * order).zip(&picture.normals) {
+                let values: Vec<f64> = values.iter().map(|v| f64::from(*v)).collect();
+                found.push(shaded(&tensor, &light, DVec3::from_array(normal.map(f64::from)), &values)?);
+            }
+            println!(
+                "  {name:14} ground {:.1} % RMS of the truth, {:.1} % of rays against the spheres; {:?}; {:.1} ms for {} pixels",
+                100.0 * error(&picture, &found, &exact),
+                100.0 * error(&picture, &found, &spheres_alone),
+                frame.counts,
+                1e3 * frame.times[2].as_secs_f64(),
+                SIDE * SIDE
+            );
+            if name == "and a cut" {
+                panels.push(found);
+            }
+        }
         let mut open = vec![0.0; order * order];
         open[0] = (4.0 * std::f64::consts::PI).sqrt();
-        let (mut found, mut without) = (Vec::new(), Vec::new());
-        for (values, normal) in frame.values.chunks(order * order).zip(&picture.normals) {
-            let (values, normal) = (
-                values.iter().map(|v| f64::from(*v)).collect::<Vec<_>>(),
-                DVec3::from_array(normal.map(f64::from)),
-            );
-            found.push(shaded(&tensor, &light, normal, &values)?);
-            without.push(shaded(&tensor, &light, normal, &open)?);
-        }
+        let normal = |normal: &[f32; 3]| DVec3::from_array(normal.map(f64::from));
+        let without = picture
+            .normals
+            .iter()
+            .map(|n| shaded(&tensor, &light, normal(n), &open))
+            .collect::<Result<Vec<_>, _>>()?;
         println!(
-            "order {order}: ground {:.1} % RMS of the truth, {:.1} % of rays against the spheres, {:.1} % without shadow; {:?}; {:.1} ms for {} pixels",
-            100.0 * error(&picture, &found, &exact),
-            100.0 * error(&picture, &found, &spheres_alone),
-            100.0 * error(&picture, &without, &exact),
-            frame.counts,
-            1e3 * frame.times[2].as_secs_f64(),
-            SIDE * SIDE
+            "  {:14} ground {:.1} % RMS of the truth",
+            "without shadow",
+            100.0 * error(&picture, &without, &exact)
         );
-        panels.push(found);
     }
     panels.push(exact);
     write_png(Path::new(&out), &view::beside(&panels), 1.6)?;

@@ -8,13 +8,14 @@
 use glam::DVec3;
 
 use super::ball::{around, farthest};
+use super::parallel;
 use super::voxels::Voxels;
 use crate::{ShadowError, Sphere};
 
 /// How a mesh is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FitSettings {
-    /// Spheres, 1 to [`crate::MAX_SPHERES`].
+    /// Spheres, 1 to 1024.
     pub spheres: usize,
     /// Teleports that are tried, 0 to 1000.
     pub teleports: usize,
@@ -75,7 +76,7 @@ pub fn fit(
     for round in 0..settings.teleports {
         let Some(mut moved) = state.teleported(&points, &voxels, round) else { break };
         moved.settle(&points, &voxels);
-        if moved.energy < state.energy {
+        if moved.better_than(&state) {
             state = moved;
         }
         progress(round + 1);
@@ -90,7 +91,7 @@ impl FitSettings {
             true => Ok(()),
             false => Err(ShadowError::Range { what, value: value as f64, range }),
         };
-        within("the number of spheres", self.spheres, 1, crate::MAX_SPHERES, "1 to 1024")?;
+        within("the number of spheres", self.spheres, 1, 1024, "1 to 1024")?;
         within("the number of teleports", self.teleports, 0, 1000, "0 to 1000")?;
         within("the resolution of the grid", self.resolution, 8, 128, "8 to 128")
     }
@@ -154,25 +155,51 @@ impl State {
 
     fn groups(&self, points: &[DVec3]) -> Vec<Vec<DVec3>> {
         let mut groups = vec![Vec::new(); self.spheres.len()];
-        for &point in points {
-            groups[self.nearest(point)].push(point);
+        let nearest = parallel::map(points, |point| self.nearest(*point));
+        for (&point, at) in points.iter().zip(nearest) {
+            groups[at].push(point);
         }
         groups
     }
 
-    /// Assigns and refits; keeps the best of what is passed through.
+    /// Assigns and refits; keeps the best of what is passed through. Spheres without points are put where most volume lies
+    /// outside.
     fn settle(&mut self, points: &[DVec3], voxels: &Voxels) {
+        let count = self.spheres.len();
         let mut best = self.clone();
         for _ in 0..LLOYD {
             let groups = self.groups(points);
-            self.spheres =
-                groups.iter().filter(|group| !group.is_empty()).map(|group| around(group)).collect();
-            self.energy = self.spheres.iter().map(|sphere| voxels.outside(sphere)).sum();
-            if self.energy < best.energy {
+            let filled: Vec<Vec<DVec3>> = groups.into_iter().filter(|group| !group.is_empty()).collect();
+            self.spheres = parallel::map(&filled, |group| around(group));
+            let outside = parallel::map(&self.spheres, |sphere| voxels.outside(sphere));
+            self.energy = outside.iter().sum();
+            if self.better_than(&best) {
                 best = self.clone();
+            }
+            let mut worst: Vec<usize> = (0..filled.len()).collect();
+            worst.sort_by(|a, b| outside[*b].total_cmp(&outside[*a]).then(a.cmp(b)));
+            for at in worst.into_iter().take(count - filled.len()) {
+                if let Some([first, second]) = self.halves(at, &filled[at]) {
+                    self.spheres[at] = first;
+                    self.spheres.push(second);
+                }
             }
         }
         *self = best;
+    }
+
+    /// With more spheres, or as many and less outside; anything is better than what has not been fitted yet.
+    fn better_than(&self, other: &Self) -> bool {
+        let [here, there] = [self, other].map(|state| state.spheres.len());
+        other.energy.is_infinite() || here > there || (here == there && self.energy < other.energy)
+    }
+
+    /// A sphere cut in two, by the points of its group that are farthest apart.
+    fn halves(&self, at: usize, group: &[DVec3]) -> Option<[Sphere; 2]> {
+        let Sphere { center, radius } = self.spheres[at];
+        let first = farthest(group, center)?;
+        let second = farthest(group, first)?;
+        Some([first, second].map(|end| Sphere { center: end.lerp(center, 0.5), radius: 0.5 * radius }))
     }
 
     /// Takes the sphere away whose points others take up with the least, and cuts the one in two with most outside. Later
@@ -199,15 +226,9 @@ impl State {
             (0..self.spheres.len()).filter(|at| *at != split).map(|at| (cost(at), at)).collect();
         cheap.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let (_, gone) = *cheap.get((round / 4) % cheap.len().min(4))?;
-        let group = self.groups(points).swap_remove(split);
-        let first = farthest(&group, self.spheres[split].center)?;
-        let second = farthest(&group, first)?;
+        let [first, second] = self.halves(split, &self.groups(points).swap_remove(split))?;
         let mut spheres = self.spheres.clone();
-        let halved = |center: DVec3| Sphere {
-            center: center.lerp(self.spheres[split].center, 0.5),
-            radius: 0.5 * self.spheres[split].radius,
-        };
-        (spheres[split], spheres[gone]) = (halved(first), halved(second));
+        (spheres[split], spheres[gone]) = (first, second);
         Some(Self { spheres, energy: f64::INFINITY })
     }
 

@@ -2,8 +2,11 @@
 
 mod ball;
 mod fit;
+mod hierarchy;
+mod parallel;
 mod skin;
 mod voxels;
 
 pub use fit::{FitSettings, SphereSet, fit};
+pub use hierarchy::{Hierarchy, Node};
 pub use skin::{SphereWeights, skinned, weights};

@@ -10,13 +10,13 @@ use airglow_tests::compare::assert_same_bits;
 use airglow_tests::device::{Fixture, fixture_with};
 use glam::{DMat4, DVec3};
 
-const SPHERES: [Sphere; 2] = [
+pub(crate) const SPHERES: [Sphere; 2] = [
     Sphere { center: DVec3::new(3.0, 1.0, 2.0), radius: 0.7 },
     Sphere { center: DVec3::new(5.0, 2.0, 6.0), radius: 1.2 },
 ];
 
 /// A square of ground, and its normals.
-fn ground() -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+pub(crate) fn ground() -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     ((0..300).map(|i| [(i % 20) as f32, 0.0, (i / 20) as f32]).collect(), vec![[0.0, 1.0, 0.0]; 300])
 }
 

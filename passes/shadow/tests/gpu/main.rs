@@ -2,10 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
+mod budget;
+mod conformance;
 mod graph;
+mod health;
 mod layout;
+mod pixels;
 mod rows;
 mod spheres;
+mod world;
 
 use airglow_gpu::{GpuError, Recorder};
 use airglow_shadow::{Bench, Shadow};

@@ -3,8 +3,9 @@
 use airglow_shadow::bench::{Scene, SphereKernel};
 use airglow_shadow::families::{FAMILIES, Random};
 use airglow_shadow::reference::{Reference, caps, rms};
-use airglow_shadow::{Exponential, Settings, Sphere};
-use glam::DVec3;
+use airglow_shadow::spheres::Hierarchy;
+use airglow_shadow::{Blockers, Exponential, Settings, Shadow, Sphere};
+use glam::{DMat4, DVec3};
 
 use crate::{wide, with_bench};
 
@@ -133,5 +134,61 @@ fn spheres_out_of_reach_are_left_out_within_the_bound_and_counted() {
         }
         let again = bench.spheres(settings, SphereKernel::Pass, &scene, 1).unwrap();
         assert_eq!(near.values, again.values, "the same frame, the same bits");
+    });
+}
+
+/// Small spheres in a ball of radius 1 above the ground.
+fn swarm(count: usize, radius: f64) -> Vec<Sphere> {
+    let mut random = Random::new(11);
+    let mut sphere = || Sphere { center: 2.0 * DVec3::Y + random.unit().cbrt() * random.direction(), radius };
+    (0..count).map(|_| sphere()).collect()
+}
+
+#[test]
+fn a_cut_of_the_hierarchy_takes_fewer_spheres_and_changes_little() {
+    let spheres = swarm(60, 0.2);
+    let positions: Vec<[f32; 3]> = (0..256).map(|i| [(i % 16) as f32 - 8.0, 0.0, (i / 16) as f32]).collect();
+    let hierarchy = Hierarchy::new(&spheres, 4).unwrap();
+    let plain_hierarchy = Hierarchy::without_ratios(&spheres).unwrap();
+    with_bench(|bench| {
+        let run = |hierarchy: &Hierarchy, cut: f64| {
+            let settings = Settings { cut, ..plain(4) };
+            let shadow = Shadow::new(bench.context, settings).unwrap();
+            let blockers = Blockers::default();
+            blockers.set_nodes(&hierarchy.posed(&spheres).unwrap(), DMat4::IDENTITY).unwrap();
+            bench.blocked(&shadow, &positions, None, &blockers, 1).unwrap()
+        };
+        let difference = |a: &[f32], b: &[f32]| {
+            let pairs = a.chunks(16).zip(b.chunks(16));
+            pairs.map(|(a, b)| rms(&wide(a), &wide(b))).fold(0.0, f64::max)
+        };
+        let scene = Scene { positions: &positions, normals: None, spheres: &spheres };
+        let listed = bench.spheres(plain(4), SphereKernel::Pass, &scene, 1).unwrap();
+        let leaves = run(&plain_hierarchy, 0.0);
+        assert_eq!(leaves.counts.spheres, listed.counts.spheres);
+        let error = difference(&leaves.values, &listed.values);
+        assert!(error < 1e-5, "the same spheres in another order: {error:e}");
+        let (fine, coarse) = (run(&hierarchy, 0.0), run(&hierarchy, 0.04));
+        assert!(coarse.counts.spheres < fine.counts.spheres / 2, "{:?}", coarse.counts);
+        let error = difference(&coarse.values, &fine.values);
+        assert!(error < 0.02, "{error}");
+    });
+}
+
+#[test]
+fn spheres_of_several_uniform_ranges_add_up() {
+    let spheres = swarm(2500, 0.01);
+    let positions = [[0.0, 0.0, 0.0], [1.5, 0.5, -1.0]];
+    let reference = Reference::new(3).unwrap();
+    with_bench(|bench| {
+        let scene = Scene { positions: &positions, normals: None, spheres: &spheres };
+        let found = bench.spheres(plain(3), SphereKernel::Pass, &scene, 1).unwrap();
+        assert_eq!(found.counts.spheres, 2500);
+        for (position, found) in positions.iter().zip(found.values.chunks(9)) {
+            let caps = caps(&spheres, DVec3::from_array(position.map(f64::from)));
+            let truth = reference.visibility(Exponential::Adaptive, &caps).unwrap();
+            let error = rms(&wide(found), &truth);
+            assert!(error < 2e-3, "{error:e}: {found:?} and {truth:?}");
+        }
     });
 }

@@ -1,0 +1,181 @@
+//! The exponential as the polynomial of the least degree that is near it wherever the product matrix has eigenvalues.
+//!
+//! `exp(M) 1` is a sum over eigenvalues (Sun 2008, eq. 5.31), so that a polynomial that is near the exponential on an
+//! interval that holds them all serves as well as the series of eq. 5.22, with fewer products. Chebyshev's series of the
+//! exponential on an interval has the coefficients of Bessel's functions (Abramowitz and Stegun, 9.6.34), which fall off
+//! long before those of the powers do.
+
+use std::f64::consts::PI;
+
+use crate::ShadowError;
+use crate::exponential::ONE;
+use crate::order::{MIN_ORDER, check_order};
+
+/// Largest eigenvalue of the product matrix of a vector without mean and of norm 1, by order from 3 on, rounded up: no
+/// eigenvalue of either sign is farther from the mean.
+const BOUND: [f64; 4] = [0.4947, 0.6873, 0.8774, 1.0633];
+/// Eigenvalues of sums of logarithms of visibility reach this far above 0: ringing.
+const RINGING: f64 = 0.2;
+/// Largest error of a polynomial, over the exponential at the upper end of its interval.
+const TOLERANCE: f64 = 2e-3;
+/// Half widths of an octave that have a polynomial.
+const STEPS: usize = 8;
+/// Octaves of half widths.
+const OCTAVES: usize = 14;
+/// The largest half width; beyond, vectors are scaled and the result is squared.
+pub(crate) const WIDEST: f64 = 16.0;
+/// Floats of a polynomial's row: coefficients by growing power, the degree in the last.
+pub const ROW: usize = 16;
+/// Rows of the table.
+pub const ROWS: usize = STEPS * OCTAVES + 1;
+
+/// Where the eigenvalues of a vector's product matrix lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Interval {
+    /// Its upper end.
+    pub top: f64,
+    /// Half of its width.
+    pub half: f64,
+}
+
+impl Interval {
+    /// Of a vector with a mean, `f_0 / sqrt(4 pi)`, and a norm without it. Sums of logarithms of visibility keep below
+    /// [`RINGING`], and so does the interval, but for half of the way up from the mean.
+    ///
+    /// # Errors
+    /// [`ShadowError::Order`].
+    pub(crate) fn new(order: usize, mean: f64, norm: f64) -> Result<Self, ShadowError> {
+        check_order(order)?;
+        let reach = BOUND[order - MIN_ORDER] * norm;
+        let up = reach.min((RINGING - mean).max(0.5 * reach));
+        Ok(Self { top: mean + up, half: 0.5 * (up + reach) })
+    }
+
+    /// Squarings that bring the half width to at most [`WIDEST`].
+    pub(crate) fn squarings(&self) -> u32 {
+        if self.half > WIDEST && self.half < 1e30 { (self.half / WIDEST).log2().ceil() as u32 } else { 0 }
+    }
+}
+
+/// A polynomial in `t` from -1 to 1 that stands for `exp(half (t - 1))`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Polynomial {
+    /// The half width it is made for: the least of the table that is no less than what was asked for.
+    pub half: f64,
+    /// By growing power; one more than the degree, 2 at least.
+    pub coefficients: Vec<f64>,
+}
+
+impl Polynomial {
+    /// For eigenvalues within a half width; [`WIDEST`] at most.
+    pub(crate) fn for_half(half: f64) -> Self {
+        let place = (STEPS as f64 * (half / WIDEST).log2()).ceil() + (ROWS - 1) as f64;
+        Self::of_row(if place > 0.0 { (place as usize).min(ROWS - 1) } else { 0 })
+    }
+
+    fn of_row(row: usize) -> Self {
+        let half = WIDEST * ((row as f64 - (ROWS - 1) as f64) / STEPS as f64).exp2();
+        let series = chebyshev(half);
+        let tail = |degree: usize| series.iter().skip(degree + 1).map(|value| value.abs()).sum::<f64>();
+        let degree = (1..ROW - 2).find(|degree| tail(*degree) <= TOLERANCE).unwrap_or(ROW - 2);
+        Self { half, coefficients: monomials(&series[..=degree]) }
+    }
+}
+
+/// The table that kernels read, [`ROWS`] times [`ROW`].
+pub(crate) fn table() -> Vec<f32> {
+    let mut table = vec![0.0; ROWS * ROW];
+    for (row, values) in table.chunks_exact_mut(ROW).enumerate() {
+        let coefficients = Polynomial::of_row(row).coefficients;
+        values.iter_mut().zip(&coefficients).for_each(|(value, c)| *value = *c as f32);
+        values[ROW - 1] = (coefficients.len() - 1) as f32;
+    }
+    table
+}
+
+/// Coefficients of Chebyshev's series of `exp(half (t - 1))`: `2 exp(-half) I_k(half)`, half of it at k = 0, by the
+/// trapezoidal rule over the angle, which is exact to rounding here.
+fn chebyshev(half: f64) -> Vec<f64> {
+    const POINTS: usize = 128;
+    let coefficient = |k: usize| {
+        let sum: f64 = (0..POINTS)
+            .map(|i| {
+                let angle = PI * (i as f64 + 0.5) / POINTS as f64;
+                (half * (angle.cos() - 1.0)).exp() * (k as f64 * angle).cos()
+            })
+            .sum();
+        sum / POINTS as f64 * if k == 0 { 1.0 } else { 2.0 }
+    };
+    (0..2 * ROW).map(coefficient).collect()
+}
+
+/// The powers of a sum of Chebyshev's polynomials.
+fn monomials(series: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; series.len()];
+    let (mut before, mut here) = (vec![0.0; series.len()], vec![0.0; series.len()]);
+    here[0] = 1.0;
+    for (k, coefficient) in series.iter().enumerate() {
+        sum.iter_mut().zip(&here).for_each(|(sum, value)| *sum += coefficient * value);
+        // T_{k+1} = 2 t T_k - T_{k-1}, and T_1 = t.
+        let factor = if k == 0 { 1.0 } else { 2.0 };
+        let shifted = |i: usize| if i == 0 { 0.0 } else { factor * here[i - 1] };
+        let next = (0..series.len()).map(|i| shifted(i) - before[i]).collect();
+        before = std::mem::replace(&mut here, next);
+    }
+    sum
+}
+
+/// `f` as `t`, its eigenvalues from -1 to 1.
+pub(crate) fn normalized(f: &[f64], interval: Interval, half: f64) -> Vec<f64> {
+    let mut t: Vec<f64> = f.iter().map(|value| value / half).collect();
+    t[0] -= (interval.top / half - 1.0) * ONE;
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eigen;
+    use airglow_math::sh::product::TripleProduct;
+
+    #[test]
+    fn the_bound_of_eigenvalues_holds_and_is_reached() {
+        for order in MIN_ORDER..=6 {
+            let tensor = TripleProduct::new(order).unwrap();
+            let count = order * order;
+            let mut largest = 0.0_f64;
+            for start in 1..4 {
+                let mut f: Vec<f64> = (0..count).map(|i| ((i * i * start + 3) % 11) as f64 - 5.0).collect();
+                // The vector that a quadratic form is largest with, for the eigenvector of the one before.
+                for _ in 0..60 {
+                    f[0] = 0.0;
+                    let norm = f.iter().map(|value| value * value).sum::<f64>().sqrt();
+                    f.iter_mut().for_each(|value| *value /= norm);
+                    let pairs = eigen::symmetric(count, &tensor.matrix(&f).unwrap());
+                    let (value, vector) =
+                        pairs.into_iter().reduce(|a, b| if b.0 > a.0 { b } else { a }).unwrap();
+                    largest = largest.max(value);
+                    tensor.product(&vector, &vector, &mut f).unwrap();
+                }
+            }
+            let bound = BOUND[order - MIN_ORDER];
+            assert!(largest <= bound && largest > bound - 2e-4, "order {order}: {largest} and {bound}");
+        }
+    }
+
+    #[test]
+    fn polynomials_are_near_the_exponential() {
+        for half in [0.0, 0.01, 0.3, 1.0, 2.7, 7.9, 16.0] {
+            let Polynomial { half: made, coefficients } = Polynomial::for_half(half);
+            assert!(made >= half && coefficients.len() >= 2, "{made} for {half}");
+            for step in 0..=40 {
+                let t = f64::from(step) / 20.0 - 1.0;
+                let found = coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
+                let truth = (made * (t - 1.0)).exp();
+                assert!((found - truth).abs() <= 1.01 * TOLERANCE, "{half} at {t}: {found} and {truth}");
+            }
+        }
+        let degrees = table().chunks(ROW).map(|row| row[ROW - 1]).collect::<Vec<_>>();
+        assert!(degrees[0] == 1.0 && degrees.windows(2).all(|pair| pair[0] <= pair[1]), "{degrees:?}");
+    }
+}

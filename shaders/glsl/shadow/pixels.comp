@@ -1,0 +1,146 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// What white diffuse surfaces reflect of the light that spheres leave them, a receiver a pixel: as visibility.comp, and the
+// visibility dotted with the products of light and cosine, `L_H(N) . g` (Sun 2008, section 5.2.4), and a disc of light
+// beside. A workgroup is a tile of 8 times 8 pixels, which chooses its nodes once.
+//
+// The includer's defines: ORDER; EXPONENTIAL 0; NORMALS.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+// Space of the spheres; w 0 where there is no surface.
+layout(set = 0, binding = 0) uniform texture2D positions;
+// Of any length but 0.
+layout(set = 0, binding = 1) uniform texture2D normals;
+
+layout(set = 0, binding = 4, rgba16f) uniform writeonly image2D picture;
+
+#if ORDER == 3
+const uint COLUMNS = 9u;
+#elif ORDER == 4
+const uint COLUMNS = 9u;
+#else
+const uint COLUMNS = 18u;
+#endif
+
+// Basis functions of the normal in bands 0, 1, 2 and 4, order^2 colours each.
+layout(std140, set = 0, binding = 9) uniform Products {
+    vec4 values[COLUMNS * ORDER * ORDER];
+} products;
+
+layout(push_constant) uniform Settings {
+    uvec2 size;
+    uint count;  // nodes
+    uint flags;
+    float reach; // heights of caps below this are left out of a whole tile
+    float cut;   // nodes whose height is below this stand for what they hold
+    float window;
+    float disc_radius; // angular; 0: no disc
+    vec4 disc;         // direction
+    vec4 irradiance;   // of a surface that faces it
+} settings;
+
+#define SHADOW_TABLE_END 1.0
+#include "shadow/blockers.glsl"
+
+const float PI = 3.14159265358979;
+
+shared vec3 corners[2][64];
+
+// The sphere around the box of the tile's surfaces.
+vec4 tile_bound(uint lane, vec3 place, bool there)
+{
+    corners[0][lane] = there ? place : vec3(3e18);
+    corners[1][lane] = there ? place : vec3(-3e18);
+    barrier();
+    vec3 low = corners[0][lane & 56u];
+    vec3 high = corners[1][lane & 56u];
+    for (uint i = 1u; i < 8u; ++i) {
+        low = min(low, corners[0][(lane & 56u) + i]);
+        high = max(high, corners[1][(lane & 56u) + i]);
+    }
+    barrier();
+    corners[0][lane] = low;
+    corners[1][lane] = high;
+    barrier();
+    for (uint i = 0u; i < 8u; ++i) {
+        low = min(low, corners[0][8u * i]);
+        high = max(high, corners[1][8u * i]);
+    }
+    return vec4(0.5 * (low + high), 0.5 * length(high - low));
+}
+
+// The share of the disc that a cap covers: what circles in the plane would, eased over the rim.
+float covered(vec4 cap)
+{
+    float radius = asin(sqrt(cap.w));
+    float between = acos(clamp(dot(cap.xyz, settings.disc.xyz), -1.0, 1.0));
+    float near = abs(radius - settings.disc_radius);
+    float part = min(radius / settings.disc_radius, 1.0);
+    return part * part * (1.0 - smoothstep(near, max(radius + settings.disc_radius, near + 1e-9), between));
+}
+
+// The share of the disc that the spheres of the set leave.
+float disc_seen(vec3 place, vec3 normal)
+{
+    float seen = 1.0;
+    for (uint at = 0u; at < settings.count; ++at) {
+        vec4 sphere = spheres.values[at];
+        float share = nodes.values[at].z == 0.0 ? 1.0 : 0.0;
+#ifdef NORMALS
+        float above;
+        sphere = shadow_above(sphere, place, normal, above);
+        share *= above;
+#endif
+        seen *= 1.0 - share * covered(shadow_cap(sphere.xyz, sphere.w, place));
+    }
+    return seen;
+}
+
+vec3 reflected(vec3 normal, float g[COUNT])
+{
+    float basis[COUNT];
+    sh_evaluate(normal, basis);
+    vec3 sum = vec3(0.0);
+    for (uint at = 0u; at < COLUMNS; ++at) {
+        // Band 3 has no column.
+        uint k = at < 9u ? at : at + 7u;
+        vec3 product = vec3(0.0);
+        EACH(i) { product += g[i] * products.values[at * uint(COUNT) + uint(i)].rgb; }
+        sum += basis[k] * product;
+    }
+    return sum;
+}
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex;
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 inside = min(pixel, ivec2(settings.size) - 1);
+    vec4 surface = texelFetch(positions, inside, 0);
+    bool there = surface.w > 0.0 && pixel == inside;
+    vec3 place = there ? surface.xyz : vec3(0.0);
+    vec3 normal = texelFetch(normals, inside, 0).xyz;
+    normal *= inversesqrt(max(dot(normal, normal), 1e-30));
+    choose(lane, tile_bound(lane, place, there), settings.reach, settings.cut);
+    float g[COUNT];
+    EACH(i) { g[i] = 0.0; }
+    uint here = accumulate(place, normal, g);
+    if (here == 0u) {
+        g[0] = ONE;
+    } else {
+        exponential(g, Exponential(0u, 1e30, 0u));
+        if (settings.flags != 0u) { clamp_visibility(g); }
+    }
+    EACH(i) {
+        float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
+        g[i] /= 1.0 + settings.window * band * band;
+    }
+    vec3 light = max(reflected(normal, g), vec3(0.0));
+    float cosine = dot(normal, settings.disc.xyz);
+    if (settings.disc_radius > 0.0 && cosine > 0.0) {
+        light += cosine * disc_seen(place, normal) / PI * settings.irradiance.rgb;
+    }
+    if (pixel == inside) { imageStore(picture, pixel, there ? vec4(light, g[0] / ONE) : vec4(0.0)); }
+}
