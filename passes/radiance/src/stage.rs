@@ -178,12 +178,13 @@ impl Scene {
         let (receiver, samples) = (&self.receiver, &self.receiver.samples);
         let settings = &receiver.settings.refinement;
         let triangles = recorder.upload(&packed.triangles)?;
-        let glows = recorder.upload(&DeviceGlow::of(&packed.triangles, &sampled))?;
         let same = sampled.len() == packed.triangles.len();
         let old = receiver.old.as_ref().filter(|_| same);
         if let Some(old) = old {
             old.record_copy(recorder, samples)?;
         }
+        let before = if old.is_some() { &*sampled } else { &packed.triangles };
+        let glows = recorder.upload(&DeviceGlow::of(&packed.triangles, before))?;
         let texels = TexelBuffers {
             batch: samples.state.slice(0, size_of::<crate::gpu::Batch>() as u64)?,
             points: (&samples.points).into(),

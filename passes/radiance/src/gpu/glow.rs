@@ -20,11 +20,9 @@ pub struct DeviceGlow {
 }
 
 impl DeviceGlow {
-    /// Those of the triangles that emit, or that changed since `before`, the same triangles in the frame before; nothing
-    /// changed where their number did.
+    /// Those of the triangles that emit, or that changed since `before`, the same triangles in the frame before, or these again.
     #[must_use]
     pub fn of(triangles: &[EmitterTriangle], before: &[EmitterTriangle]) -> Vec<Self> {
-        let before = if before.len() == triangles.len() { before } else { triangles };
         // What moves shows or hides no more than the brightest there is, before or after.
         let all = triangles.iter().chain(before);
         let brightest = all.map(EmitterTriangle::radiance).fold(Vec3::ZERO, Vec3::max);
