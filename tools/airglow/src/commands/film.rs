@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         };
         arguments.draw(&mut renderer, &settings, output, device.machine())
     })?;
-    let plot = steadiness::svg(&film.picture, &film.first, &film.second)?;
+    let plot = steadiness::svg(&film.first, &film.second)?;
     files::write(&arguments.output.join("difference.svg"), plot.as_bytes())?;
     let json = serde_json::to_vec_pretty(&film).map_err(Failure::work)?;
     files::write(&arguments.output.join("film.json"), &json)?;

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use airglow::shadow::spheres::{Hierarchy, Node};
 use airglow::shadow::{self, Blockers, Counts, Receivers, Shadow, Sphere};
 use airglow_gpu::{Buffer, Imports, Readback, Record, Requirements};
 use airglow_graph::{self as graph, Access, Graph, Handle, LeftOut, PassKind};
@@ -24,6 +25,8 @@ pub struct SceneShadow {
     instances: Vec<Instance>,
     fixed: Vec<Sphere>,
     spheres: Vec<InstanceSpheres>,
+    /// Of each of these, what stands for many spheres from afar.
+    hierarchies: Vec<Hierarchy>,
     moving: Scene,
 }
 
@@ -120,7 +123,8 @@ impl SceneShadow {
             radius: f64::from(blocker.radius),
         });
         let (fixed, spheres) = (fixed.collect(), transfer.spheres.clone());
-        let shadow = Self { pass, instances, fixed, spheres, moving: skin::moving(scene) };
+        let hierarchies = hierarchies(&spheres, order)?;
+        let shadow = Self { pass, instances, fixed, spheres, hierarchies, moving: skin::moving(scene) };
         shadow.set_time(0.0)?;
         Ok(Some(shadow))
     }
@@ -129,11 +133,12 @@ impl SceneShadow {
     pub fn set_time(&self, seconds: f32) -> Outcome {
         let poses: Vec<_> =
             self.moving.figures.iter().map(|figure| self.moving.pose(figure, seconds)).collect();
-        let mut spheres = self.fixed.clone();
-        for moved in &self.spheres {
-            spheres.extend(moved.in_pose(&self.moving, &poses[moved.figure]));
+        let mut nodes: Vec<Node> = self.fixed.iter().copied().map(Node::alone).collect();
+        for (moved, hierarchy) in self.spheres.iter().zip(&self.hierarchies) {
+            let spheres = moved.in_pose(&self.moving, &poses[moved.figure]);
+            nodes.extend(hierarchy.posed(&spheres).map_err(Failure::work)?);
         }
-        let set = |instance: &Instance| instance.blockers.set(&spheres, instance.receiver_from_world);
+        let set = |instance: &Instance| instance.blockers.set_nodes(&nodes, instance.receiver_from_world);
         self.instances.iter().try_for_each(set).map_err(Failure::input)
     }
 
@@ -176,6 +181,20 @@ impl SceneShadow {
     pub fn sphere_count(&self) -> usize {
         self.fixed.len() + self.spheres.iter().map(InstanceSpheres::count).sum::<usize>()
     }
+}
+
+/// One for each instance; those of the same spheres are made once.
+fn hierarchies(instances: &[InstanceSpheres], order: usize) -> Outcome<Vec<Hierarchy>> {
+    let mut made: Vec<Hierarchy> = Vec::with_capacity(instances.len());
+    for (index, own) in instances.iter().enumerate() {
+        let same = instances[..index].iter().position(|other| other.spheres == own.spheres);
+        let hierarchy = match same.and_then(|same| made.get(same)) {
+            Some(hierarchy) => hierarchy.clone(),
+            None => Hierarchy::new(&own.spheres, order).map_err(Failure::work)?,
+        };
+        made.push(hierarchy);
+    }
+    Ok(made)
 }
 
 impl Instance {

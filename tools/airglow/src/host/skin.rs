@@ -137,6 +137,14 @@ impl Skins {
     }
 }
 
+/// Joints and weights of each vertex; a mesh without a skin follows its node, the one joint there is.
+pub fn bound(mesh: &Mesh) -> (Vec<[u16; 4]>, Vec<[f32; 4]>) {
+    let (mut joints, mut weights) = (mesh.joints.clone(), mesh.weights.clone());
+    joints.resize(mesh.positions.len(), [0; 4]);
+    weights.resize(mesh.positions.len(), [1.0, 0.0, 0.0, 0.0]);
+    (joints, weights)
+}
+
 /// What is needed to move the figures of a scene.
 pub fn moving(scene: &Scene) -> Scene {
     Scene {
@@ -184,10 +192,7 @@ impl Part {
         instance: usize,
     ) -> Result<Self, GpuError> {
         let count = mesh.positions.len();
-        // A mesh without a skin follows its node: the one joint there is.
-        let (mut joints, mut weights) = (mesh.joints.clone(), mesh.weights.clone());
-        joints.resize(count, [0; 4]);
-        weights.resize(count, [1.0, 0.0, 0.0, 0.0]);
+        let (joints, weights) = bound(mesh);
         let read = Access::ComputeStorageRead;
         let rest = [
             upload::buffer(recorder, "rest positions", &mesh.positions, read)?,

@@ -8,6 +8,7 @@ use airglow_scene::{Mesh, Scene};
 use glam::{DMat4, DVec3, Mat4};
 use serde::{Deserialize, Serialize};
 
+use super::skin::bound;
 use super::transfer::file_name;
 use crate::failure::{Failure, Outcome};
 use crate::files;
@@ -23,7 +24,8 @@ pub struct InstanceSpheres {
     pub figure: usize,
     /// Index into the scene's instances.
     pub instance: usize,
-    spheres: Vec<Sphere>,
+    /// In the space of its mesh.
+    pub spheres: Vec<Sphere>,
     weights: Vec<SphereWeights>,
 }
 
@@ -104,11 +106,7 @@ fn each_instance(
             let mesh = &scene.meshes[*mesh];
             let share = figure.spheres as usize * mesh.triangle_count() / triangles.max(1);
             let set = fit(mesh, share.max(1))?;
-            let count = mesh.positions.len();
-            // A mesh without a skin follows its node: the one joint there is.
-            let (mut joints, mut shares) = (mesh.joints.clone(), mesh.weights.clone());
-            joints.resize(count, [0; 4]);
-            shares.resize(count, [1.0, 0.0, 0.0, 0.0]);
+            let (joints, shares) = bound(mesh);
             let weights = spheres::weights(&set, &joints, &shares).map_err(Failure::work)?;
             all.push(InstanceSpheres { figure: index, instance, spheres: set.spheres, weights });
         }

@@ -7,28 +7,23 @@ use crate::failure::{Failure, Outcome};
 
 const SIZE: (u32, u32) = (720, 360);
 
-/// The SVG of a film: difference of whole pictures, and first and second differences where no figure is.
-pub fn svg(picture: &[f64], first: &[f64], second: &[f64]) -> Outcome<String> {
+/// The SVG of a film: first and second differences where no figure is.
+pub fn svg(first: &[f64], second: &[f64]) -> Outcome<String> {
     let mut svg = String::new();
-    draw(&mut svg, picture, first, second)
+    draw(&mut svg, first, second)
         .map_err(|error| Failure::work(format!("could not draw a plot: {error}")))?;
     Ok(svg)
 }
 
-fn draw(
-    svg: &mut String,
-    picture: &[f64],
-    first: &[f64],
-    second: &[f64],
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(svg: &mut String, first: &[f64], second: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
     let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
-    let top = 1.15 * picture.iter().chain(first).chain(second).copied().fold(1e-9, f64::max);
+    let top = 1.5 * first.iter().chain(second).copied().fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(&area)
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(70)
-        .build_cartesian_2d(0.0..(picture.len() + 1) as f64, 0.0..top)?;
+        .build_cartesian_2d(0.0..(first.len() + 2) as f64, 0.0..top)?;
     chart
         .configure_mesh()
         .x_desc("frame")
@@ -40,9 +35,8 @@ fn draw(
         .bold_line_style(RGBColor(225, 225, 225))
         .draw()?;
     let lines = [
-        ("whole picture, from the frame before", 1, picture),
-        ("shadow alone, where no figure is: first difference", 2, first),
-        ("shadow alone: second difference (noise would be 1.73 times the first)", 2, second),
+        ("ground that no figure covers: from the frame before", 2, first),
+        ("second difference: of noise 1.73 times the first, of a steady motion far less", 2, second),
     ];
     for (index, (name, start, values)) in lines.into_iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
@@ -67,7 +61,7 @@ fn draw(
 mod tests {
     #[test]
     fn the_plot_names_its_lines() {
-        let svg = super::svg(&[0.1, 0.2, 0.1], &[0.01, 0.02], &[0.001, 0.0]).unwrap();
+        let svg = super::svg(&[0.01, 0.02], &[0.001, 0.0]).unwrap();
         assert!(svg.contains("second difference") && svg.contains("frame"), "{svg}");
     }
 }

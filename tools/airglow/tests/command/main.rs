@@ -5,6 +5,7 @@
 mod explain;
 mod fog;
 mod instruments;
+mod moving;
 mod roads;
 
 use std::path::{Path, PathBuf};

@@ -6,10 +6,11 @@ mod sweeps;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use airglow::shadow::bench::{Bench, Frame, Scene, SphereKernel};
 use airglow::shadow::reference::{Reference, caps, rms};
-use airglow::shadow::{Exponential, Settings, Shadow, ShadowError, Sphere};
+use airglow::shadow::{Cap, Exponential, Settings, Shadow, ShadowError, Sphere};
 use glam::DVec3;
 
 use super::{Arguments, Row, Table};
@@ -28,7 +29,7 @@ pub(super) fn attempt(arguments: &Arguments, global: &Global, output: &Output) -
     device::with(global, &Shadow::requirements(), |device| {
         let run = device.bench();
         let bench = Bench { context: device.context(), run: &run };
-        let trial = Trial { bench: &bench, passes: RefCell::default() };
+        let trial = Trial { bench: &bench, passes: RefCell::default(), references: RefCell::default() };
         output.say("trying extreme inputs");
         let mut rows = inputs::rows(&trial, only).map_err(Failure::work)?;
         rows.extend(meshes::rows(only));
@@ -48,9 +49,20 @@ struct Trial<'a> {
     bench: &'a Bench<'a>,
     /// By order, and whether they clamp and take normals.
     passes: RefCell<BTreeMap<(usize, bool, bool), Shadow>>,
+    references: RefCell<BTreeMap<usize, Reference>>,
 }
 
 impl Trial<'_> {
+    /// Visibility under some caps, by the pass's own way in f64.
+    fn reference(&self, order: usize, caps: &[Cap]) -> Result<Vec<f64>, ShadowError> {
+        let mut references = self.references.borrow_mut();
+        let reference = match references.entry(order) {
+            Entry::Occupied(made) => made.into_mut(),
+            Entry::Vacant(place) => place.insert(Reference::new(order)?),
+        };
+        reference.visibility(Exponential::Adaptive, caps)
+    }
+
     /// Visibility of a receiver at the origin, with its normal where it has one.
     fn frame(
         &self,
@@ -90,7 +102,7 @@ impl Sky {
     fn visibility(&self, trial: &Trial<'_>) -> Result<(Vec<f64>, Vec<f64>, u64), ShadowError> {
         let frame = trial.frame(self.order, self.clamp, None, &self.spheres)?;
         let caps = caps(&self.spheres, DVec3::ZERO);
-        let truth = Reference::new(self.order)?.visibility(Exponential::Adaptive, &caps)?;
+        let truth = trial.reference(self.order, &caps)?;
         Ok((frame.values.iter().copied().map(f64::from).collect(), truth, frame.counts.clamped))
     }
 

@@ -2,7 +2,8 @@
 
 use airglow::math::sh::{coefficient_count, project};
 use airglow::shadow::eval::{ExponentialRow, exponentials};
-use airglow::shadow::reference::truth;
+use airglow::shadow::families::Family;
+use airglow::shadow::reference::{caps, truth};
 use airglow::shadow::{Evaluator, Exponential, ShadowError, Sphere};
 use glam::DVec3;
 
@@ -52,6 +53,7 @@ pub fn rows(trial: &Trial<'_>, only: Option<&str>) -> Result<Vec<Row>, ShadowErr
             }
         }
         rows.extend(overlapping(trial, only, order)?);
+        rows.extend(gathered(trial, only, order)?);
         rows.extend(below(trial, only, order)?);
         rows.extend(long_vectors(trial, only, order)?);
         rows.extend(peak(trial, only, order)?);
@@ -59,9 +61,32 @@ pub fn rows(trial: &Trial<'_>, only: Option<&str>) -> Result<Vec<Row>, ShadowErr
     Ok(rows)
 }
 
-/// A thousand blockers in one place: nothing may be negative or more than there is; next to what is really open.
+/// A thousand blockers that overlap all around: next to nothing of the sky is left.
 fn overlapping(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
-    let name = format!("1000 overlapping blockers, order {order}");
+    let name = format!("1000 overlapping blockers all around, order {order}");
+    if !wanted(only, &name) {
+        return Ok(None);
+    }
+    let family = Family { name: "", count: 1000, degrees: [10.0, 30.0] };
+    let spheres = family.scene(1)?.iter().map(|cap| cap.sphere(3.0)).collect();
+    let sky = Sky { order, spheres, clamp: true };
+    let (found, _, clamped) = sky.visibility(trial)?;
+    let truth = truth(order, DEGREE, &caps(&sky.spheres, DVec3::ZERO))?;
+    Ok(Some(row(
+        &name,
+        "caps of 10 to 30 degrees".to_owned(),
+        format!("open {:.6}; {clamped} receiver clamped", open(&found)),
+        format!("open {:.6}", open(&truth)),
+        error(&found, &truth),
+        0.01,
+        sky.again(&name),
+    )))
+}
+
+/// A thousand blockers in one place, whose logarithms add up to more than there is: the result must be one that a
+/// visibility can be, though it is not the true one.
+fn gathered(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
+    let name = format!("1000 blockers in one place, order {order}");
     if !wanted(only, &name) {
         return Ok(None);
     }
@@ -71,19 +96,19 @@ fn overlapping(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Op
     };
     let sky = Sky { order, spheres: (0..1000).map(place).collect(), clamp: true };
     let (found, _, clamped) = sky.visibility(trial)?;
-    let truth = truth(order, DEGREE, &airglow::shadow::reference::caps(&sky.spheres, DVec3::ZERO))?;
-    // What a visibility must obey: a mean from 0 to 1, and a square whose integral is no more than its own.
+    let truth = truth(order, DEGREE, &caps(&sky.spheres, DVec3::ZERO))?;
+    // A mean from 0 to 1, and a square whose integral is no more than its own.
     let square: f64 = found.iter().map(|value| value * value).sum::<f64>() / (4.0 * std::f64::consts::PI);
     let beyond = (square - open(&found)).max(-open(&found)).max(open(&found) - 1.0).max(0.0);
     let finite = found.iter().all(|value| value.is_finite());
-    let broken = if finite { beyond } else { f64::INFINITY };
     Ok(Some(row(
         &name,
-        "spheres of radius 1 within 0.35 of one another; the error is how far the result is from one that a visibility can be"
+        "spheres of radius 1 within 0.35 of one another; the error is how far the result is from one that a visibility \
+         can be: what it is off the truth is the model's"
             .to_owned(),
         format!("open {:.4}, mean square {square:.4}; {clamped} receiver clamped", open(&found)),
         format!("open {:.4}", open(&truth)),
-        broken,
+        if finite { beyond } else { f64::INFINITY },
         1e-5,
         sky.again(&name),
     )))
