@@ -7,7 +7,7 @@ mod host;
 
 use airglow_bake::{Mesh, unshadowed};
 use airglow_math::World;
-use airglow_math::world::{Depth, Winding};
+use airglow_math::world::Winding;
 use airglow_relight::{
     Bench, Case, CaseLight, Instance, Light, Relight, RelightError, Settings, Texels, instance_rotation,
 };
