@@ -393,6 +393,11 @@ enum AirglowLobeStorage
    * `VK_FORMAT_R8G8B8A8_SNORM`: half the bytes, for matt materials.
    */
   AIRGLOW_LOBE_STORAGE_SNORM8 = 1,
+  /**
+   * `VK_FORMAT_R8G8B8A8_UNORM`: axis, width and weight, for `normals_octahedral` of `normals/lobe.glsl`; nearer than the other
+   * in as many bytes.
+   */
+  AIRGLOW_LOBE_STORAGE_OCTAHEDRAL8 = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

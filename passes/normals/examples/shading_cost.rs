@@ -39,8 +39,10 @@ fn race(
         works.push((name, shading, whole(&image)?, Vec::new()));
         Ok(())
     };
-    for method in METHODS {
-        add(method.to_string(), method, Shading::new(bench.context, method, brdf)?)?;
+    let methods =
+        if storage == Storage::Octahedral8 { &[Method::Toksvig, Method::Lobes(4)][..] } else { &METHODS };
+    for &method in methods {
+        add(method.to_string(), method, Shading::new(bench.context, method, storage, brdf)?)?;
     }
     for count in [1, 4] {
         add(format!("{count} lookups"), Method::Lobes(count), Shading::lookups(bench.context, count)?)?;
@@ -76,7 +78,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let desc = BufferDesc { size: 4 * u64::from(SIDE * SIDE), usage: BufferUsageFlags::STORAGE_BUFFER };
     let output = context.create_buffer(Label::new("example", "radiance"), &desc, Location::Device)?;
     for brdf in [Brdf::BlinnPhong { exponent: 50.0 }, Brdf::Ggx { alpha: 0.2 }] {
-        for (storage, level) in [(Storage::F16, 0.0), (Storage::F16, 0.5), (Storage::Snorm8, 0.0)] {
+        for (storage, level) in [(Storage::F16, 0.0), (Storage::F16, 0.5), (Storage::Octahedral8, 0.0)] {
             race(&bench, &map, (&sampler, &output), (brdf, storage, level))?;
         }
     }

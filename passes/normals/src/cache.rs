@@ -1,6 +1,6 @@
 //! Chains kept in files: one map, one safetensors file, found by a key over all that the chain depends on.
 //!
-//! A tensor `level1`, `level2`, … for each level, `[lobes, rows, columns, 4]`, f16 or signed bytes, as the texture takes them;
+//! A tensor `level1`, `level2`, … for each level, `[lobes, rows, columns, 4]`, f16, signed or unsigned bytes, as the texture takes them;
 //! the metadata entry `airglow.normals` has schema, key and checksum. A file is written beside its target and renamed, so
 //! that it is whole or absent; whatever cannot be used, for a reason that is told, is built again.
 
@@ -18,7 +18,7 @@ use crate::settings::Settings;
 use crate::storage::Storage;
 
 /// Version of the layout and of the numbers in it. It rises whenever the same map would come out differently.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 const ENTRY: &str = "airglow.normals";
 
 /// BLAKE3 of the schema, the settings and the map. Equal keys mean equal chains on one driver.
@@ -84,7 +84,7 @@ impl ChainKey {
     pub fn new(map: &NormalMap, settings: &Settings) -> Self {
         let mut hasher = blake3::Hasher::new();
         let [width, height] = map.size(0);
-        let storage = settings.storage.lobe_bytes();
+        let storage = settings.storage.format().as_raw() as u64;
         let numbers = [u64::from(SCHEMA), width as u64, height as u64, settings.fit.lobes as u64, storage];
         hasher.update(b"airglow normals");
         numbers.iter().for_each(|number| {
@@ -187,6 +187,7 @@ fn dtype(storage: Storage) -> Dtype {
     match storage {
         Storage::F16 => Dtype::F16,
         Storage::Snorm8 => Dtype::I8,
+        Storage::Octahedral8 => Dtype::U8,
     }
 }
 

@@ -84,8 +84,8 @@ fn fitting(budget: u64, bytes: impl Fn(usize, Storage) -> u64) -> String {
         Some((lobes, storage)) => format!("set the lobes to {lobes} and the storage to {storage:?}"),
         None => {
             format!(
-                "give {} bytes for 1 lobe in Storage::Snorm8, or a smaller map",
-                bytes(1, Storage::Snorm8)
+                "give {} bytes for 1 lobe in Storage::Octahedral8, or a smaller map",
+                bytes(1, Storage::Octahedral8)
             )
         }
     }
@@ -122,7 +122,7 @@ mod tests {
         assert!(within(bytes).is_ok());
         let error = within(bytes - 1).unwrap_err().to_string();
         assert!(error.contains(&bytes.to_string()), "{error}");
-        assert!(error.contains("lobes to 6 and the storage to Snorm8"), "{error}");
+        assert!(error.contains("lobes to 6 and the storage to Octahedral8"), "{error}");
         let error = within(197 * 16).unwrap_err().to_string();
         assert!(error.contains("lobes to 2 and the storage to F16"), "{error}");
         let error = within(100).unwrap_err().to_string();
@@ -136,7 +136,7 @@ mod tests {
             check_build(&square, &wide, Some(taken)).is_ok() && check_build(&square, &wide, None).is_ok()
         );
         let error = check_build(&square, &wide, Some(taken - 1)).unwrap_err().to_string();
-        assert!(error.contains("lobes to 4 and the storage to Snorm8"), "{error}");
+        assert!(error.contains("lobes to 4 and the storage to Octahedral8"), "{error}");
         let single = NormalMap::from_vectors(1, 1, &[[0.0, 0.0, 1.0]]).unwrap();
         assert_eq!(levels(&single, &wide).unwrap(), []);
     }

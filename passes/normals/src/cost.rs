@@ -17,6 +17,7 @@ use crate::kernels::words;
 use crate::map::NormalMap;
 use crate::method::Method;
 use crate::settings::Settings;
+use crate::storage::Storage;
 
 /// `Settings` of `cost.comp`.
 #[repr(C)]
@@ -71,6 +72,12 @@ static MODULES: [(Method, [&[u8]; 3]); 14] = [
     (Method::Geometric, models!("geometric.", "")),
     (Method::Lean, models!("lean.", "")),
 ];
+/// Of four lobes in [`Storage::Octahedral8`].
+static OCTAHEDRAL: [&[u8]; 3] = [
+    include_bytes!("../../../shaders/spirv/normals/cost_octahedral.lambert.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/normals/cost_octahedral.blinn.spv").as_slice(),
+    include_bytes!("../../../shaders/spirv/normals/cost_octahedral.ggx.spv").as_slice(),
+];
 static LOOKUPS: [(usize, &[u8]); 2] = [(1, module!("LAYERS1.lookup")), (4, module!("LAYERS4.lookup"))];
 
 /// A kernel that looks a texture up and shades what is there, under one light a pixel.
@@ -81,11 +88,17 @@ pub struct Shading {
 }
 
 impl Shading {
-    /// That of a method and a material.
+    /// That of a method, of how lobes are stored, and of a material.
     ///
     /// # Errors
-    /// [`NormalsError::Range`] for a material out of range, [`NormalsError::Gpu`].
-    pub fn new(context: &Context, method: Method, brdf: Brdf) -> Result<Self, NormalsError> {
+    /// [`NormalsError::Range`] for a material out of range, [`NormalsError::Method`] for other numbers of octahedral lobes
+    /// than four, [`NormalsError::Gpu`].
+    pub fn new(
+        context: &Context,
+        method: Method,
+        storage: Storage,
+        brdf: Brdf,
+    ) -> Result<Self, NormalsError> {
         brdf.check()?;
         let (model, parameter) = match brdf {
             Brdf::Lambert => (0, 0.0),
@@ -98,7 +111,12 @@ impl Shading {
             bands.as_flattened_mut().iter_mut().zip(factors).for_each(|(band, factor)| *band = factor);
         }
         let found = MODULES.iter().find(|(of, _)| *of == method);
-        let (_, modules) = found.ok_or_else(|| NormalsError::Method { method: method.to_string() })?;
+        let modules = match (method, storage) {
+            (Method::Lobes(4), Storage::Octahedral8) => Some(&OCTAHEDRAL),
+            (Method::Lobes(_) | Method::Taps, Storage::Octahedral8) => None,
+            _ => found.map(|(_, modules)| modules),
+        };
+        let modules = modules.ok_or_else(|| NormalsError::Method { method: method.to_string() })?;
         Self::of(
             context,
             modules[model],

@@ -16,7 +16,7 @@ use crate::reference;
 use crate::settings::Settings;
 
 /// A row of `normals`: a texel of a level under a light of irradiance 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelRow {
     /// The level; 0 is the map.
     pub level: usize,
@@ -43,7 +43,8 @@ pub struct Evaluated {
     pub reference: f64,
 }
 
-/// Runs the rows; a refused one says why, the others still run.
+/// Runs the rows; a refused one says why, the others still run. Neighbours that differ in nothing but the method share their
+/// truth.
 ///
 /// # Errors
 /// As [`Bench::build`], [`Bench::radiance`], [`Bench::averages`] and [`Bench::rival`].
@@ -52,7 +53,13 @@ pub fn texels(
     map: &NormalMap,
     rows: &[TexelRow],
 ) -> Result<Vec<Result<Evaluated, NormalsError>>, NormalsError> {
-    let mut results: Vec<Result<Evaluated, NormalsError>> = rows.iter().map(|row| row.truth(map)).collect();
+    let mut results: Vec<Result<Evaluated, NormalsError>> = Vec::with_capacity(rows.len());
+    for (place, row) in rows.iter().enumerate() {
+        let last =
+            place.checked_sub(1).filter(|&last| rows[last] == TexelRow { method: rows[last].method, ..*row });
+        let known = last.and_then(|last| results[last].as_ref().ok()).map(|found| found.reference);
+        results.push(row.truth(map, known));
+    }
     let mut places: BTreeMap<Method, Vec<usize>> = BTreeMap::new();
     for (place, _) in results.iter().enumerate().filter(|(_, result)| result.is_ok()) {
         places.entry(rows[place].method).or_default().push(place);
@@ -122,13 +129,17 @@ fn of_rival(
 }
 
 impl TexelRow {
-    /// Checks the row and gives it its truth.
-    fn truth(&self, map: &NormalMap) -> Result<Evaluated, NormalsError> {
+    /// Checks the row and gives it its truth, which may be known.
+    fn truth(&self, map: &NormalMap, known: Option<f64>) -> Result<Evaluated, NormalsError> {
         self.brdf.check()?;
         self.method.to_string().parse::<Method>()?;
-        let directions = self.directions()?;
-        let footprint = map.footprint(self.level, self.x, self.y)?;
-        let reference = reference::radiance(&footprint, self.brdf, directions);
+        let reference = match known {
+            Some(known) => known,
+            None => {
+                let directions = self.directions()?;
+                reference::radiance(&map.footprint(self.level, self.x, self.y)?, self.brdf, directions)
+            }
+        };
         Ok(Evaluated { value: f64::NAN, reference })
     }
 

@@ -22,6 +22,8 @@ static ALIGN: [(usize, &[u8]); 3] = [
     (6, include_bytes!("../../../shaders/spirv/normals/align.LOBES6.spv").as_slice()),
 ];
 static PACK_F16: &[u8] = include_bytes!("../../../shaders/spirv/normals/pack.f16.spv").as_slice();
+static PACK_OCTAHEDRAL8: &[u8] =
+    include_bytes!("../../../shaders/spirv/normals/pack.octahedral8.spv").as_slice();
 static PACK_SNORM8: &[u8] = include_bytes!("../../../shaders/spirv/normals/pack.snorm8.spv").as_slice();
 static AVERAGE: [(Kept, &[u8], usize); 5] = [
     (Kept::Mean, include_bytes!("../../../shaders/spirv/normals/average.mean.spv").as_slice(), 1),
@@ -201,6 +203,7 @@ pub(crate) fn pack(storage: Storage) -> Vec<u32> {
     match storage {
         Storage::F16 => words(PACK_F16),
         Storage::Snorm8 => words(PACK_SNORM8),
+        Storage::Octahedral8 => words(PACK_OCTAHEDRAL8),
     }
 }
 

@@ -23,6 +23,7 @@
 
 pub mod averages;
 pub mod bench;
+pub mod blocks;
 mod brdf;
 mod build;
 pub mod cache;
@@ -37,10 +38,12 @@ pub mod ggx;
 mod harmonics;
 mod health;
 pub mod kernels;
+pub mod ktx2;
 mod map;
 mod method;
 mod mixture;
 mod normals;
+pub mod octahedral;
 pub mod reference;
 pub mod rivals;
 mod settings;

@@ -7,6 +7,7 @@
 // FILTER_MIP      the mean normal, scaled to length 1
 // FILTER_TEXELS   the map itself at every distance: what many samples a pixel make the truth
 // FILTER_HARMONICS nine coefficients of the normals in three layers, for matt surfaces
+// MAPPED_OCTAHEDRAL 1: lobes in four bytes each
 // MAPPED_PARTS 4: a pixel's footprint in quarters, each looked up and shaded by itself; 1: as a whole
 
 #include "normals/harmonics.glsl"
@@ -54,6 +55,9 @@ Mapped mapped_at(vec2 uv, vec2 across, vec2 along)
             for (float tap = 0.5; tap < taps; tap += 1.0) {
                 vec3 place = vec3(uv + longer * (tap / taps - 0.5), float(i));
                 vec4 found = textureLod(sampler2DArray(coarse_normals, coarse_normals_sampler), place, level - 1.0);
+#if MAPPED_OCTAHEDRAL
+                found = normals_octahedral(found);
+#endif
                 mapped.kept[i] += found / taps;
             }
         }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // What sampling and shading a filtered map costs: one bilinear or trilinear lookup and one light an invocation.
 //
-// METHOD_LOBES LAYERS of them, METHOD_PARTS LAYERS of them at four places, METHOD_SH ORDER bands, METHOD_LEAN two layers;
+// METHOD_LOBES LAYERS of them, with KEPT_OCTAHEDRAL in four bytes, METHOD_PARTS LAYERS of them at four places, METHOD_SH ORDER bands, METHOD_LEAN two layers;
 // of a mean normal: METHOD_TOKSVIG, METHOD_ROUGHNESS, METHOD_MIP, METHOD_LENGTH, METHOD_GEOMETRIC; METHOD_LOOKUP LAYERS
 // lookups and nothing else
 // MODEL_LAMBERT, MODEL_BLINN, MODEL_GGX
@@ -41,6 +41,9 @@ float lobes_at(vec2 place, float level, vec3 light, vec3 half_vector)
     float sum = 0.0;
     for (int i = 0; i < LAYERS; ++i) {
         vec4 lobe = kept_at(place, i, level);
+#ifdef KEPT_OCTAHEDRAL
+        lobe = normals_octahedral(lobe);
+#endif
 #if defined(MODEL_LAMBERT)
         sum += normals_lambert(lobe, light);
 #elif defined(MODEL_BLINN)

@@ -44,6 +44,17 @@ NormalsLobe normals_lobe(vec4 stored)
     return NormalsLobe(stored.xyz * inverse, normals_concentration(r, max(1.0 - r, 0.0)), r);
 }
 
+// A lobe as functions take it, from one sampled as axis, width and weight in four unsigned bytes.
+vec4 normals_octahedral(vec4 texel)
+{
+    vec2 unfolded = (255.0 / 127.0) * texel.xy - 1.0;
+    vec3 axis = vec3(unfolded, 1.0 - abs(unfolded.x) - abs(unfolded.y));
+    vec2 signs = vec2(unfolded.x < 0.0 ? -1.0 : 1.0, unfolded.y < 0.0 ? -1.0 : 1.0);
+    axis.xy = axis.z < 0.0 ? (1.0 - abs(unfolded.yx)) * signs : unfolded;
+    float scale = texel.w * (1.0 - texel.z * texel.z) * inversesqrt(dot(axis, axis));
+    return vec4(scale * axis, texel.w);
+}
+
 // (1 - exp(-2 k)) / k.
 float normals_opening(float k)
 {

@@ -7,6 +7,7 @@
 //
 // STORAGE_F16     four halves a lobe
 // STORAGE_SNORM8  four signed bytes a lobe
+// STORAGE_OCTAHEDRAL8  axis, width and weight in four unsigned bytes, each to the nearest
 
 #ifdef STORAGE_F16
 #include "common/half.glsl"
@@ -27,6 +28,21 @@ layout(push_constant) uniform Settings {
     uint lobes;
 } settings;
 
+#ifdef STORAGE_OCTAHEDRAL8
+uint octahedral(vec4 lobe)
+{
+    vec3 mean = lobe.w > 0.0 ? lobe.xyz / lobe.w : vec3(0.0);
+    float size = length(mean);
+    vec3 axis = size > 0.0 ? mean / size : vec3(0.0, 0.0, 1.0);
+    vec2 unfolded = axis.xy / (abs(axis.x) + abs(axis.y) + abs(axis.z));
+    vec2 signs = vec2(unfolded.x < 0.0 ? -1.0 : 1.0, unfolded.y < 0.0 ? -1.0 : 1.0);
+    vec2 folded = axis.z < 0.0 ? (1.0 - abs(unfolded.yx)) * signs : unfolded;
+    vec4 codes = vec4(127.0 * folded + 127.0, 255.0 * sqrt(clamp(1.0 - size, 0.0, 1.0)), 255.0 * lobe.w);
+    uvec4 bits = uvec4(clamp(codes + 0.5, 0.0, 255.0)); // truncates
+    return bits.x | bits.y << 8 | bits.z << 16 | bits.w << 24;
+}
+#endif
+
 #ifdef STORAGE_F16
 uvec4 code(vec4 value)
 {
@@ -41,7 +57,7 @@ uint stepped(uint bits, int by)
 {
     return (bits & 0x7fffu) == 0u ? bits : uint(int(bits) + by);
 }
-#else
+#elif defined(STORAGE_SNORM8)
 uvec4 code(vec4 value)
 {
     return uvec4((ivec4(clamp(value, -1.0, 1.0) * 127.0 + 127.5) - 127) & 255); // truncates what is not negative
@@ -63,6 +79,9 @@ void main()
     uint texel = at % settings.texels;
     uint layer = at / settings.texels;
     vec4 lobe = lobes.values[texel * settings.lobes + layer];
+#ifdef STORAGE_OCTAHEDRAL8
+    packed_lobes.values[at] = octahedral(lobe);
+#else
     uvec4 best = uvec4(0u);
     uint weight = code(lobe).w;
     float rounded = decoded(weight);
@@ -85,5 +104,6 @@ void main()
     packed_lobes.values[2u * at + 1u] = best.z | best.w << 16;
 #else
     packed_lobes.values[at] = best.x | best.y << 8 | best.z << 16 | best.w << 24;
+#endif
 #endif
 }

@@ -14,6 +14,9 @@ pub enum AirglowLobeStorage {
     F16 = 0,
     /// `VK_FORMAT_R8G8B8A8_SNORM`: half the bytes, for matt materials.
     Snorm8 = 1,
+    /// `VK_FORMAT_R8G8B8A8_UNORM`: axis, width and weight, for `normals_octahedral` of `normals/lobe.glsl`; nearer than the other
+    /// in as many bytes.
+    Octahedral8 = 2,
 }
 
 /// How textures of lobes are made. Zero is the default of every field.
@@ -51,7 +54,7 @@ impl pass::Settings for AirglowNormalsSettings {
                 iterations: count(self.iterations, fit.iterations),
                 sharpest: if self.sharpest == 0.0 { fit.sharpest } else { self.sharpest },
             },
-            storage: one_of("storage", self.storage, &[Storage::F16, Storage::Snorm8])?,
+            storage: one_of("storage", self.storage, &[Storage::F16, Storage::Snorm8, Storage::Octahedral8])?,
             budget: (self.budget > 0).then_some(self.budget),
         };
         settings.check()?;

@@ -212,7 +212,8 @@ fn rows_of_texels_are_near_the_truth_or_refused() {
 fn rivals_on_the_device_are_those_of_the_reference() {
     let maps = [common::groove(32), common::grain(25)];
     let brdfs = [Brdf::Lambert, Brdf::BlinnPhong { exponent: 50.0 }, Brdf::Ggx { alpha: 0.3 }];
-    for method in Method::ALL.into_iter().filter(|method| !matches!(method, Method::Lobes(_) | Method::Taps)) {
+    for method in Method::ALL.into_iter().filter(|method| !matches!(method, Method::Lobes(_) | Method::Taps))
+    {
         let (mut values, mut expected) = (Vec::new(), Vec::new());
         for map in &maps {
             let mut random = Random(13);
@@ -251,7 +252,7 @@ fn host_structs_are_as_the_compiler_laid_them_out() {
         let layout = host_layout!(AlignConstants { coarse_size, size });
         align.push_constants.as_ref().unwrap().assert_matches(&layout);
     }
-    for storage in ["f16", "snorm8"] {
+    for storage in ["f16", "snorm8", "octahedral8"] {
         let pack = Module::load(&format!("normals/pack.{storage}.spv")).unwrap();
         pack.assert_bindings(&BINDINGS);
         pack.push_constants.as_ref().unwrap().assert_matches(&host_layout!(PackConstants { texels, lobes }));

@@ -151,7 +151,7 @@ fn storage_keeps_the_radiance() {
         }
         exact
     });
-    for (exponent, most) in [(50.0, [4e-3, 0.1]), (200.0, [8e-3, 0.2])] {
+    for (exponent, most) in [(50.0, [4e-3, 0.1, 0.04]), (200.0, [8e-3, 0.2, 0.08])] {
         for (storage, most) in Storage::ALL.into_iter().zip(most) {
             let error = storage_error(&map, &levels, storage, Brdf::BlinnPhong { exponent });
             println!("{storage:?}, exponent {exponent}: {:.3} % from the same lobes in f32", 100.0 * error);
@@ -172,7 +172,7 @@ fn check_packed(storage: Storage, level: &LevelLobes, bytes: &[u8]) {
             let kept = |lobe: WeightedLobe| 1.0 - lobe.mean().length();
             let (ours, theirs) = ((kept(found) - kept(exact)).abs(), (kept(expected) - kept(exact)).abs());
             // A weight between two codes may fall to either.
-            let slack = if storage == Storage::F16 { 1e-6 } else { 1e-3 };
+            let slack = if storage == Storage::F16 { 1e-6 } else { 2e-3 };
             assert!(ours <= 1.5 * theirs + slack, "{storage:?}: {ours:e} and {theirs:e} of {exact:?}");
         }
     }
