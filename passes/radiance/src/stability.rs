@@ -1,5 +1,9 @@
 //! Samples of extreme emitters with the GPU's result and the truth, and sweeps of each limit through its singularity.
 
+mod receivers;
+
+pub use receivers::{FrameOutcome, frames};
+
 use glam::DVec3;
 
 use crate::eval::{CubeRow, Evaluated, Method, cubes, default_rays};

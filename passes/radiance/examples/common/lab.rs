@@ -94,10 +94,10 @@ impl<'a> Lab<'a> {
     fn frame(&self, refinement: Settings, gradients: bool, lit: bool) -> Result<Frame, RadianceError> {
         let radiance = &self.radiance[usize::from(gradients)];
         let settings = PassSettings { refinement, ..*radiance.settings() };
-        let whole = [Part { vertices: 0..self.placed.positions.len() as u32, turn: None }];
-        let parts = if lit { &whole[..] } else { &[] };
+        let vertices = if lit { self.placed.positions.len() as u32 } else { 1 };
+        let parts = [Part { vertices: 0..vertices, turn: None }];
         let (tree, positions) = (&self.placed.tree, &self.placed.positions);
-        let receiver = Receiver::new(self.bench.context, settings, tree, positions, parts)?;
+        let receiver = Receiver::new(self.bench.context, settings, tree, positions, &parts)?;
         let prepared = radiance.prepare(&receiver, &self.lights())?;
         let light = self.bench.light_buffers(&prepared)?;
         self.bench.frame(&prepared, &light)?;

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers fail the test they are called from")]
 
 mod conformance;
+mod global;
 mod health;
 mod motion;
 mod pass;

@@ -2,7 +2,7 @@
 
 use airglow_radiance::eval::{CubeRow, Method, cubes};
 use airglow_radiance::gpu::Texels;
-use airglow_radiance::{RadianceError, Triangle, stability};
+use airglow_radiance::{PassSettings, Radiance, RadianceError, Triangle, stability};
 use glam::DVec3;
 
 use crate::with_bench;
@@ -19,6 +19,17 @@ fn extremes_and_limits_are_those_of_the_truth() {
         }
         assert!(stability::cases(bench, Some("no such case")).unwrap().is_empty());
     });
+}
+
+#[test]
+fn frames_of_extreme_receivers_pass() {
+    let requirements = Radiance::requirements(&PassSettings::default());
+    let outcomes = with_bench(&requirements, |bench| stability::frames(bench, None, false).unwrap());
+    assert!(outcomes.len() > 15, "{}", outcomes.len());
+    for outcome in outcomes {
+        println!("{outcome:?}");
+        assert!(outcome.pass(), "{outcome:?}");
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The scene's near emitters as things that are drawn, and as the triangles that the radiance pass samples.
 
-use airglow::radiance::Triangle;
+use airglow::radiance::{Sphere, Triangle};
 use airglow_scene::geometry::emitter;
-use airglow_scene::{Emitter, Instance, Material, Mesh, Scene};
+use airglow_scene::{Emitter, EmitterShape, Instance, Material, Mesh, Scene};
 use glam::{DVec3, Mat4, Vec3};
 
 /// Puts every emitter into the scene as a mesh that glows and reflects nothing, after all other instances.
@@ -52,6 +52,20 @@ fn mesh(glowing: &Emitter, material: usize) -> Mesh {
 pub fn offset(emitter: &Emitter, part: f32) -> Vec3 {
     let center = Vec3::from(emitter.center);
     emitter.to.map_or(Vec3::ZERO, |to| part * (Vec3::from(to) - center))
+}
+
+/// All emitters in the world as the pass takes them, at `part` of their ways: boxes as triangles, spheres as such.
+pub fn shapes(emitters: &[Emitter], part: f32) -> (Vec<Triangle>, Vec<Sphere>) {
+    let sphere = |glowing: &Emitter| match glowing.shape {
+        EmitterShape::Sphere { radius } => Some(Sphere {
+            centre: (Vec3::from(glowing.center) + offset(glowing, part)).as_dvec3(),
+            radius: f64::from(radius),
+            radiance: DVec3::from(glowing.radiance.map(f64::from)),
+        }),
+        EmitterShape::Box { .. } => None,
+    };
+    let boxes = emitters.iter().filter(|glowing| sphere(glowing).is_none());
+    (triangles(&boxes.cloned().collect::<Vec<_>>(), part), emitters.iter().filter_map(sphere).collect())
 }
 
 /// The triangles of all emitters in the world, at `part` of their ways.

@@ -8,7 +8,7 @@ use airglow::math::sphere::equirect::Projector;
 use airglow::radiance::gpu::RefineState;
 use airglow::radiance::gpu::bench::Bench;
 use airglow::radiance::{
-    Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Triangle,
+    Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Sphere, Triangle,
 };
 use airglow_gpu::{Context, Imports, Record, Requirements};
 use airglow_graph::{Graph, LeftOut};
@@ -35,6 +35,7 @@ pub struct NearLight {
     receiver: Receiver,
     emitters: Vec<Emitter>,
     triangles: Vec<Triangle>,
+    spheres: Vec<Sphere>,
     /// The environment about the world's axes where it is not turned.
     distant: Vec<[f64; 3]>,
     order: usize,
@@ -114,11 +115,16 @@ impl Placed {
         for (index, (instance, lit)) in scene.instances.iter().zip(&transfer.instances).enumerate() {
             let first = positions.len() as u32;
             let place = |p: &[f32; 3]| instance.transform.transform_point3((*p).into()).to_array();
-            positions.extend(scene.meshes[instance.mesh].positions.iter().map(place));
+            let mesh = &scene.meshes[instance.mesh].positions;
             let baked = &transfer.transfers[lit.transfer].coefficients;
-            match index < surfaces {
-                true => vectors.extend_from_slice(baked),
-                false => vectors.resize(vectors.len() + baked.len(), 0.0),
+            if index < surfaces {
+                positions.extend(mesh.iter().map(place));
+                vectors.extend_from_slice(baked);
+            } else {
+                // It reflects nothing, and must not widen the tree of what does.
+                let anywhere = positions.first().copied().unwrap_or_default();
+                positions.resize(positions.len() + mesh.len(), anywhere);
+                vectors.resize(vectors.len() + baked.len(), 0.0);
             }
             let side = if lit.inverted { -1.0 } else { 1.0 };
             let turn = side * DMat3::from_quat(lit.rotation.conjugate());
@@ -148,11 +154,13 @@ impl NearLight {
             Some(environment) => distant(environment, settings.order)?,
             None => Vec::new(),
         };
+        let (triangles, spheres) = emitters::shapes(&scene.emitters, 0.0);
         Ok(Some(Self {
             radiance: Radiance::new(context, settings).map_err(Failure::work)?,
             receiver,
             emitters: scene.emitters.clone(),
-            triangles: emitters::triangles(&scene.emitters, 0.0),
+            triangles,
+            spheres,
             distant,
             order: settings.order,
         }))
@@ -160,7 +168,7 @@ impl NearLight {
 
     /// Moves the emitters to `part` of their ways; frames declared before keep them where they were.
     pub fn move_emitters(&mut self, part: f32) {
-        self.triangles = emitters::triangles(&self.emitters, part);
+        (self.triangles, self.spheres) = emitters::shapes(&self.emitters, part);
     }
 
     /// Adds the pass.
@@ -171,16 +179,17 @@ impl NearLight {
         arrival: Arrival<'_>,
     ) -> Outcome<Lit> {
         let distant = self.arriving(arrival)?;
-        let lights = Lights { emitters: &self.triangles, distant: &distant, ..Lights::default() };
-        self.radiance.add(graph, imports, &self.receiver, &lights).map_err(Failure::work)
+        self.radiance.add(graph, imports, &self.receiver, &self.lights(&distant)).map_err(Failure::work)
     }
 
     /// Turns the distant light of a declared frame.
     pub fn turn(&self, control: &Control, arrival: Arrival<'_>) -> Outcome {
         let distant = self.arriving(arrival)?;
-        control
-            .set(&Lights { emitters: &self.triangles, distant: &distant, ..Lights::default() })
-            .map_err(Failure::work)
+        control.set(&self.lights(&distant)).map_err(Failure::work)
+    }
+
+    fn lights<'a>(&'a self, distant: &'a [[f32; 3]]) -> Lights<'a> {
+        Lights { emitters: &self.triangles, spheres: &self.spheres, distant }
     }
 
     /// What the samples of the last frame took, once it is done.

@@ -23,10 +23,10 @@ impl NearStat {
     /// From what a frame left on the device.
     pub fn new(state: Option<&RefineState>, lights: &[[f32; 4]], shape: LightShape, bound: f64) -> Self {
         let Some(state) = state else { return Self::default() };
-        let samples = lights.chunks_exact(shape.stride()).take(state.taken as usize);
+        let exact = closed_forms(lights, shape).take(state.taken as usize);
         Self {
             samples: state.taken,
-            closed_forms: samples.filter(|sample| sample[shape.coefficients()][2] == 1.0).count() as u32,
+            closed_forms: exact.filter(|exact| *exact).count() as u32,
             rounds: state.rounds,
             limit_hit: state.limited == 1,
             estimate: state.estimate,
@@ -43,6 +43,13 @@ impl NearStat {
              error expected {estimate:.1e} of {bound:.0e}\n"
         )
     }
+}
+
+/// Which samples are closed forms, of this frame (1) or kept from one before (3), of lights as a device left them.
+pub fn closed_forms(lights: &[[f32; 4]], shape: LightShape) -> impl Iterator<Item = bool> + '_ {
+    lights
+        .chunks_exact(shape.stride())
+        .map(move |sample| [1.0, 3.0].contains(&sample[shape.coefficients()][2]))
 }
 
 #[cfg(test)]

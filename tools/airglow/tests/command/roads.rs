@@ -97,7 +97,8 @@ fn a_scene_without_an_environment_leaves_relighting_out_and_says_so() {
     let spot = path(&root(), "assets/mesh/spot.glb");
     let plan = succeeds(folder.path(), &["plan", &spot, "--check", "--validate", "--json"]);
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
-    let left_out = &plan["left_out"][0];
+    let is_relight = |left_out: &&serde_json::Value| left_out["what"] == "relight";
+    let left_out = plan["left_out"].as_array().unwrap().iter().find(is_relight).unwrap();
     assert_eq!(
         (&left_out["what"], &left_out["why"]),
         (&"relight".into(), &"the scene has no environment".into())
@@ -268,6 +269,10 @@ fn what_if_tells_what_a_change_would_do() {
     let without = what_if("environment=none");
     for line in ["- pass relight colours", "+ left out relight", "~ pipelines: 4 -> 0 (-4)"] {
         assert!(without.contains(line), "`{line}` is not in: {without}");
+    }
+    let dark = succeeds(&root, &["plan", "assets/scenes/blocks.toml", "--what-if", "emitters=none"]);
+    for line in ["- pass radiance samples", "+ left out radiance"] {
+        assert!(dark.contains(line), "`{line}` is not in: {dark}");
     }
     let bytes = what_if("storage=f16");
     assert!(bytes.contains("vectors of mesh 0: 208896 B -> 104448 B"), "{bytes}");

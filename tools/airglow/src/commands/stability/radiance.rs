@@ -3,7 +3,8 @@
 use airglow::radiance::eval::{CubeRow, Method};
 use airglow::radiance::gpu::Texels;
 use airglow::radiance::gpu::bench::Bench;
-use airglow::radiance::stability::{self, BOUND, Sweep};
+use airglow::radiance::stability::{self, BOUND, FrameOutcome, Sweep};
+use airglow::radiance::{PassSettings, Radiance};
 
 use super::{Arguments, Row, SweepTable, Table};
 use crate::cli::Global;
@@ -14,17 +15,20 @@ use crate::output::Output;
 /// Runs the inputs and sweeps that were asked for.
 pub(super) fn attempt(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Table> {
     let only = arguments.case.as_deref();
-    device::with(global, &Texels::requirements(), |device| {
+    let requirements = Texels::requirements().and(&Radiance::requirements(&PassSettings::default()));
+    device::with(global, &requirements, |device| {
         let run = device.bench();
         let bench = Bench { context: device.context(), run: &run };
         output.say("trying extreme inputs");
         let rows = stability::cases(&bench, only).map_err(Failure::work)?;
+        output.say("drawing frames of extreme receivers");
+        let frames = stability::frames(&bench, only, !arguments.quick).map_err(Failure::work)?;
         output.say("sweeping limits");
         let sweeps = stability::sweeps(&bench, only).map_err(Failure::work)?;
         Ok(Table {
             pass: arguments.pass.name(),
             machine: device.machine(),
-            rows: rows.into_iter().map(row).collect(),
+            rows: rows.into_iter().map(row).chain(frames.into_iter().map(frame)).collect(),
             sweeps: sweeps.into_iter().map(sweep).collect(),
         })
     })
@@ -35,6 +39,13 @@ fn row(outcome: stability::Outcome) -> Row {
     let stability::Outcome { name, result, truth, error, row } = outcome;
     let input = format!("{} triangles, {:?}", row.triangles.len(), row.method);
     Row { name, input, result, truth, error, bound: BOUND, pass, reproduce: again(&row) }
+}
+
+fn frame(outcome: FrameOutcome) -> Row {
+    let pass = outcome.pass();
+    let FrameOutcome { name, input, result, truth, error, bound } = outcome;
+    let reproduce = format!("airglow stability radiance --case '{name}'");
+    Row { name: name.to_owned(), input, result, truth, error, bound, pass, reproduce }
 }
 
 fn sweep(sweep: Sweep) -> SweepTable {

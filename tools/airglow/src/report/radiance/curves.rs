@@ -28,7 +28,8 @@ fn refined(change: impl FnOnce(&mut Settings)) -> PassSettings {
 impl Measurement<'_> {
     /// The bound on the oracle's estimate.
     pub fn bound(&self) -> Outcome<Curve> {
-        let settings = BOUNDS.map(|bound| Setting::new(bound.to_string(), refined(|r| r.bound = bound)));
+        let settings =
+            BOUNDS.map(|bound| Setting::new(bound.to_string(), refined(|r| r.bound = bound)).of_same_rays());
         let question = format!(
             "Which bound on the error of a node's vertices, in units of colour? The error falls with it. The host of \
              this command asks for {BOUND}."
@@ -41,6 +42,7 @@ impl Measurement<'_> {
         let limits = [16, 64, 256, 1024, 4096];
         let setting = |limit: usize| {
             Setting::new(limit.to_string(), refined(|r| (r.bound, r.limit) = (BOUNDS[5], limit)))
+                .of_same_rays()
         };
         let question = "What is left of the error where a limit on samples stops the bound, here of 0.001?";
         let default = default_settings().refinement.limit.to_string();
@@ -116,12 +118,12 @@ impl Measurement<'_> {
         for _ in 0..4 {
             let name = format!("{} triangles", emitters.len());
             let finer = emitters.iter().flat_map(quarters).collect();
-            settings.push(Setting { name, pass: default_settings(), emitters: Some(emitters) });
+            settings.push(Setting { emitters: Some(emitters), ..Setting::new(name, default_settings()) });
             emitters = finer;
         }
         let question = "How does time grow with the triangles of the emitters, whose shapes stay?";
-        let first = settings[0].name.clone();
-        self.knob("emitter triangles", question, settings, &first)
+        let curve = self.knob("emitter triangles", question, settings, "")?;
+        Ok(Curve { chosen: None, comparisons: Vec::new(), ..curve })
     }
 
     /// Bounds at which an oracle takes about so many samples, by bisection.
@@ -144,7 +146,8 @@ impl Measurement<'_> {
         format!(
             "root mean square over root mean square colour, all vertices and channels. arithmetic: the device against \
              f64, the same samples and rays. setting: against a sample at each vertex of the same order, faces of {} \
-             texels with {} x {} rays. model: against emitters ray-traced from each vertex, beyond the truth's own noise \
+             texels with {} x {} rays; of bound and limit, whose way leads to a sample at each vertex of the default faces, \
+             against those. model: against emitters ray-traced from each vertex, beyond the truth's own noise \
              of {:.1e}; what a vertex does not see is hidden from it to infinity, as in its transfer",
             CONVERGED.0,
             CONVERGED.1,

@@ -29,8 +29,9 @@ impl Measurement<'_> {
         let run = self.device.bench();
         let bench = Bench { context: self.device.context(), run: &run };
         let tree = self.workload.tree(pass.order)?;
-        let none: [Part; 0] = [];
-        let receiver = Receiver::new(bench.context, *pass, &tree, &self.workload.positions, &none);
+        // One vertex is lit: only samples count.
+        let one = [Part { vertices: 0..1, turn: None }];
+        let receiver = Receiver::new(bench.context, *pass, &tree, &self.workload.positions, &one);
         let receiver = receiver.map_err(Failure::work)?;
         let radiance = Radiance::new(bench.context, *pass).map_err(Failure::work)?;
         let lights = Lights { emitters, ..Lights::default() };
@@ -38,7 +39,8 @@ impl Measurement<'_> {
         if prepared.left_out.is_some() {
             return Ok(0);
         }
-        bench.frame(&prepared, &[]).map_err(Failure::work)?;
+        let light = bench.light_buffers(&prepared).map_err(Failure::work)?;
+        bench.frame(&prepared, &light).map_err(Failure::work)?;
         Ok(bench.refined(&receiver, &tree).map_err(Failure::work)?.0.samples.len())
     }
 
@@ -78,7 +80,7 @@ fn falls(bound: &Curve) -> Number {
 
 /// The light of vertices against the rival's.
 fn speed(reconstruction: &Curve) -> Outcome<Option<Number>> {
-    let ([with, without, .., all], _) = (reconstruction.points.as_slice(), ()) else { return Ok(None) };
+    let [with, without, .., all] = reconstruction.points.as_slice() else { return Ok(None) };
     let ratios = [with, without].map(|ours| paired(all, ours).map_err(Failure::work));
     let [with, without] = ratios;
     let (with, without) = (with?, without?);

@@ -13,6 +13,7 @@ use glam::DVec3;
 use super::workload::Workload;
 use super::{Measurement, parallel};
 use crate::failure::{Failure, Outcome};
+use crate::measure::near;
 use crate::report::interleave::{self, Rounds};
 use crate::report::model::{Errors, Point};
 use crate::report::relight::truth::flat;
@@ -26,6 +27,8 @@ pub struct Setting {
     pub pass: PassSettings,
     /// Other emitters than the workload's.
     pub emitters: Option<Vec<Triangle>>,
+    /// Whether its converged setting is a sample at each vertex of the default faces: what more samples lead to.
+    pub same_rays: bool,
 }
 
 /// A plan on the starting line.
@@ -43,7 +46,12 @@ pub struct Runner {
 impl Setting {
     /// Settings of the workload's own emitters.
     pub fn new(name: impl Into<String>, pass: PassSettings) -> Self {
-        Self { name: name.into(), pass, emitters: None }
+        Self { name: name.into(), pass, emitters: None, same_rays: false }
+    }
+
+    /// The same, whose converged setting is a sample at each vertex of the default faces.
+    pub fn of_same_rays(self) -> Self {
+        Self { same_rays: true, ..self }
     }
 }
 
@@ -77,7 +85,7 @@ impl Measurement<'_> {
         let (device, workload) = (self.device, self.workload);
         let run = device.bench();
         let bench = Bench { context: device.context(), run: &run };
-        let Setting { name, pass, emitters } = setting;
+        let Setting { name, pass, emitters, same_rays } = setting;
         let emitters = emitters.as_deref().unwrap_or(&workload.emitters);
         let tree = workload.tree(pass.order)?;
         let part = Part { vertices: 0..workload.positions.len() as u32, turn: None };
@@ -92,6 +100,8 @@ impl Measurement<'_> {
         let (refined, _) = bench.refined(&receiver, &tree).map_err(Failure::work)?;
         let colours = workload.colours(pass.order, &light);
         let samples = refined.samples.len();
+        let records: Vec<[f32; 4]> = bench.read(&receiver.samples().lights).map_err(Failure::work)?;
+        let exact = near::closed_forms(&records, receiver.shape()).take(samples).collect();
         let limited = if refined.limited { ", at the limit" } else { "" };
         let shape = receiver.shape();
         let taken = shape.light_bytes(samples) + shape.gradient_bytes(samples);
@@ -102,8 +112,8 @@ impl Measurement<'_> {
             memory: receiver.bytes() + lit,
             counts: Default::default(),
             error: Errors {
-                arithmetic: Some(arithmetic(workload, &pass, refined, emitters, &colours)?),
-                ..workload.errors(pass.order, &colours)?
+                arithmetic: Some(arithmetic(workload, &pass, (refined, exact), emitters, &colours)?),
+                ..workload.errors(pass.order, &colours, same_rays)?
             },
             distribution: None,
         };
@@ -119,10 +129,10 @@ impl Measurement<'_> {
 }
 
 impl Workload {
-    /// Errors against the converged samples of [`super::workload::FULL_ORDER`] where `order` differs from the default's, of
-    /// the same order else; and against the ray-traced truth.
-    pub fn errors(&self, order: usize, colours: &[[f32; 3]]) -> Outcome<Errors> {
-        let converged = self.converged(order);
+    /// Errors against a sample at each vertex of the same order, of the finest rays or of the default's; and against the
+    /// ray-traced truth.
+    pub fn errors(&self, order: usize, colours: &[[f32; 3]], same_rays: bool) -> Outcome<Errors> {
+        let converged = if same_rays { self.default_faces(order) } else { self.finest(order) };
         let setting = relative_l2(&flat(colours), &flat(&converged)).map_err(Failure::work)?;
         Ok(Errors {
             arithmetic: None,
@@ -133,11 +143,12 @@ impl Workload {
     }
 }
 
-/// Relative root mean square difference of the colours from those of the same rays and interpolation in f64.
+/// Relative root mean square difference of the colours from those of the same rays and interpolation in f64; samples that are
+/// `exact`, closed forms, are taken as they are.
 fn arithmetic(
     workload: &Workload,
     pass: &PassSettings,
-    mut refined: Refined,
+    (mut refined, exact): (Refined, Vec<bool>),
     emitters: &[Triangle],
     colours: &[[f32; 3]],
 ) -> Outcome<f64> {
@@ -148,8 +159,10 @@ fn arithmetic(
     }
     let points: Vec<DVec3> = refined.samples.iter().map(|sample| sample.point).collect();
     let lights = parallel(points.len(), |place| cube.sample(points[place], emitters));
-    for (sample, light) in refined.samples.iter_mut().zip(lights) {
-        sample.light = light.map_err(Failure::work)?;
+    for ((sample, light), exact) in refined.samples.iter_mut().zip(lights).zip(exact) {
+        if !exact {
+            sample.light = light.map_err(Failure::work)?;
+        }
     }
     let reconstruction = Reconstruction::new(&refined, Weights::Compact, pass.gradients);
     let mut light = Vec::with_capacity(pass.order * pass.order * workload.positions.len());

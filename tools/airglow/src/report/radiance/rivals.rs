@@ -102,7 +102,7 @@ impl Measurement<'_> {
         let light: Vec<[f32; 3]> =
             lights.iter().flat_map(|l| &l.coefficients).map(|l| l.as_vec3().to_array()).collect();
         let order = default_settings().order;
-        let error = self.workload.errors(order, &self.workload.colours(order, &light))?;
+        let error = self.workload.errors(order, &self.workload.colours(order, &light), false)?;
         let buffers = self.buffers(&bench, &points)?;
         let bytes = Self::shape().light_bytes(points.len());
         let work: Work = Box::new(move |recorder| texels.record(recorder, &buffers));
@@ -128,7 +128,7 @@ impl Measurement<'_> {
         (bench.run)(&mut |recorder| record(recorder)).map_err(Failure::work)?;
         let light: Vec<[f32; 3]> = bench.read(&work.light).map_err(Failure::work)?;
         let order = default_settings().order;
-        let error = self.workload.errors(order, &self.workload.colours(order, &light))?;
+        let error = self.workload.errors(order, &self.workload.colours(order, &light), false)?;
         let count = places.len();
         let name = format!("even, 1/d^{power} ({count} samples)");
         self.rival(name, count, Self::shape().light_bytes(count) + work.light.size(), error, record)

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use airglow::math::sh::rotation::Rotation;
 use airglow::radiance::gpu::bench::Bench;
 use airglow::radiance::gpu::{LightShape, TexelSettings, Texels};
-use airglow::radiance::{Hierarchy, Triangle};
+use airglow::radiance::{Hierarchy, PassSettings, Triangle};
 use airglow_bake::{Occluders, Probe};
 use airglow_scene::{Quality, Scene, Shadow};
 use glam::{DMat3, DVec3};
@@ -38,8 +38,9 @@ pub struct Workload {
     vectors: Vec<f32>,
     /// Corners are exact in single precision.
     pub emitters: Vec<Triangle>,
-    /// Light of [`FULL_ORDER`] sampled at each vertex, as finely as there is.
-    converged: Vec<[f32; 3]>,
+    /// Light of [`FULL_ORDER`] sampled at each vertex, as finely as there is, and by the default's faces.
+    finest: Vec<[f32; 3]>,
+    default_faces: Vec<[f32; 3]>,
     /// Ray-traced colours.
     pub truth: Truth,
 }
@@ -63,7 +64,9 @@ impl Workload {
         let transfer = transfer::of_scene(scene, &quality, cache, output)?;
         let (positions, vectors) = in_the_world(scene, &transfer)?;
         output.say(format!("sampling light at {} vertices", positions.len()));
-        let converged = sampled(device, &positions, &emitters)?;
+        let PassSettings { face, rays, .. } = PassSettings::default();
+        let finest = sampled(device, &positions, &emitters, CONVERGED)?;
+        let default_faces = sampled(device, &positions, &emitters, (face, rays))?;
         output.say("tracing the truth");
         let half = |seed| traced(scene, &positions, &emitters, seed);
         let truth = Truth::of_halves(&half(1)?, &half(2)?)?;
@@ -76,7 +79,7 @@ impl Workload {
             scene.emitters.len(),
             emitters.len()
         );
-        Ok(Self { description, positions, vectors, emitters, converged, truth })
+        Ok(Self { description, positions, vectors, emitters, finest, default_faces, truth })
     }
 
     /// The tree over the vertices with transfer of an order.
@@ -97,9 +100,14 @@ impl Workload {
         self.coloured(order, light, order * order)
     }
 
-    /// The same from the converged samples.
-    pub fn converged(&self, order: usize) -> Vec<[f32; 3]> {
-        self.coloured(order, &self.converged, FULL)
+    /// The same from the finest samples at each vertex.
+    pub fn finest(&self, order: usize) -> Vec<[f32; 3]> {
+        self.coloured(order, &self.finest, FULL)
+    }
+
+    /// The same from samples of the default's faces at each vertex.
+    pub fn default_faces(&self, order: usize) -> Vec<[f32; 3]> {
+        self.coloured(order, &self.default_faces, FULL)
     }
 
     /// `stride` coefficients a vertex, of which those of `order` count.
@@ -139,12 +147,17 @@ fn in_the_world(scene: &Scene, transfer: &SceneTransfer) -> Outcome<(Vec<[f32; 3
     Ok((positions, vectors))
 }
 
-/// Light of [`FULL_ORDER`] at each vertex, by the device's finest cube maps.
-fn sampled(device: &Device<'_>, positions: &[[f32; 3]], emitters: &[Triangle]) -> Outcome<Vec<[f32; 3]>> {
+/// Light of [`FULL_ORDER`] at each vertex, by the device's cube maps of so many texels and rays.
+fn sampled(
+    device: &Device<'_>,
+    positions: &[[f32; 3]],
+    emitters: &[Triangle],
+    (size, rays): (u32, u32),
+) -> Outcome<Vec<[f32; 3]>> {
     let run = device.bench();
     let bench = Bench { context: device.context(), run: &run };
     let shape = LightShape { order: FULL_ORDER, gradients: false };
-    let settings = TexelSettings { shape, size: CONVERGED.0, rays: CONVERGED.1 };
+    let settings = TexelSettings { shape, size, rays };
     let texels = Texels::new(bench.context, settings).map_err(Failure::work)?;
     let mut light = Vec::with_capacity(positions.len() * FULL);
     for batch in positions.chunks(BATCH) {
