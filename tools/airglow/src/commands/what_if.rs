@@ -93,7 +93,7 @@ fn apply(change: &str, scene: &mut Scene, settings: &mut Settings) -> Outcome {
         #[cfg(feature = "radiance")]
         ("emitters", _) => (value == "none").then(|| emitters::remove(scene)),
         #[cfg(feature = "shadow")]
-        ("moving_shadow", "off") => Some(*scene = shadow::without(scene.clone())),
+        ("moving_shadow", _) => (value == "off").then(|| *scene = shadow::without(scene.clone())),
         ("relight", _) => switch(value).map(|on| settings.without_relight = !on),
         ("fog", _) => switch(value).map(|on| settings.air = Air::with_fog(on)),
         ("views", _) => whole(value, 8).map(|views| settings.views = views),

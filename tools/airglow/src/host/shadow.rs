@@ -23,11 +23,16 @@ const ORDERS: std::ops::RangeInclusive<u32> = 3..=6;
 pub struct SceneShadow {
     pass: Shadow,
     instances: Vec<Instance>,
+    spheres: Blocking,
+    moving: Scene,
+}
+
+/// What casts shadows.
+pub struct Blocking {
     fixed: Vec<Sphere>,
-    spheres: Vec<InstanceSpheres>,
+    moving: Vec<InstanceSpheres>,
     /// Of each of these, what stands for many spheres from afar.
     hierarchies: Vec<Hierarchy>,
-    moving: Scene,
 }
 
 /// The vertices of an instance.
@@ -118,26 +123,15 @@ impl SceneShadow {
             let frame = if lit.in_world { Mat4::IDENTITY } else { scene.instances[number].transform };
             instances.push(Instance::new(device, &pass, scene, number, frame)?);
         }
-        let fixed = scene.blockers.iter().map(|blocker| Sphere {
-            center: DVec3::from_array(blocker.center.map(f64::from)),
-            radius: f64::from(blocker.radius),
-        });
-        let (fixed, spheres) = (fixed.collect(), transfer.spheres.clone());
-        let hierarchies = hierarchies(&spheres, order)?;
-        let shadow = Self { pass, instances, fixed, spheres, hierarchies, moving: skin::moving(scene) };
+        let spheres = Blocking::new(scene, transfer.spheres.clone(), order)?;
+        let shadow = Self { pass, instances, spheres, moving: skin::moving(scene) };
         shadow.set_time(0.0)?;
         Ok(Some(shadow))
     }
 
     /// Moves the spheres to where they are `seconds` after the scene's time 0, from the next recording on.
     pub fn set_time(&self, seconds: f32) -> Outcome {
-        let poses: Vec<_> =
-            self.moving.figures.iter().map(|figure| self.moving.pose(figure, seconds)).collect();
-        let mut nodes: Vec<Node> = self.fixed.iter().copied().map(Node::alone).collect();
-        for (moved, hierarchy) in self.spheres.iter().zip(&self.hierarchies) {
-            let spheres = moved.in_pose(&self.moving, &poses[moved.figure]);
-            nodes.extend(hierarchy.posed(&spheres).map_err(Failure::work)?);
-        }
+        let nodes = self.spheres.nodes(&self.moving, seconds)?;
         let set = |instance: &Instance| instance.blockers.set_nodes(&nodes, instance.receiver_from_world);
         self.instances.iter().try_for_each(set).map_err(Failure::input)
     }
@@ -179,7 +173,29 @@ impl SceneShadow {
 
     /// Spheres of a frame.
     pub fn sphere_count(&self) -> usize {
-        self.fixed.len() + self.spheres.iter().map(InstanceSpheres::count).sum::<usize>()
+        self.spheres.fixed.len() + self.spheres.moving.iter().map(InstanceSpheres::count).sum::<usize>()
+    }
+}
+
+impl Blocking {
+    /// The blockers of a scene and the spheres of its figures, with ratios for so many bands.
+    pub fn new(scene: &Scene, moving: Vec<InstanceSpheres>, order: usize) -> Outcome<Self> {
+        let fixed = scene.blockers.iter().map(|blocker| Sphere {
+            center: DVec3::from_array(blocker.center.map(f64::from)),
+            radius: f64::from(blocker.radius),
+        });
+        Ok(Self { fixed: fixed.collect(), hierarchies: hierarchies(&moving, order)?, moving })
+    }
+
+    /// In the world, as figures stand `seconds` after the scene's time 0.
+    pub fn nodes(&self, scene: &Scene, seconds: f32) -> Outcome<Vec<Node>> {
+        let poses: Vec<_> = scene.figures.iter().map(|figure| scene.pose(figure, seconds)).collect();
+        let mut nodes: Vec<Node> = self.fixed.iter().copied().map(Node::alone).collect();
+        for (moved, hierarchy) in self.moving.iter().zip(&self.hierarchies) {
+            let spheres = moved.in_pose(scene, &poses[moved.figure]);
+            nodes.extend(hierarchy.posed(&spheres).map_err(Failure::work)?);
+        }
+        Ok(nodes)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The pass's knobs on the ground of a scene: time, and error against rays.
 
-use airglow::shadow::bench::{Scene as Receivers, SphereKernel};
+use airglow::shadow::bench::SphereKernel;
 use airglow::shadow::{MAX_ORDER, MIN_ORDER, Settings};
 
 use super::shading::Shading;
@@ -19,6 +19,7 @@ pub fn curves(measurement: &Measurement<'_>, shading: &Shading) -> Outcome<Vec<C
         (MIN_ORDER..=MAX_ORDER).map(|order| (format!("order {order}"), Settings { order, ..default }));
     let clips = named(&[0.002, 0.01, 0.02, 0.05, 0.1, 0.3], |settings, clip| Settings { clip, ..settings });
     let reaches = named(&[0.0, 1e-5, 1e-4, 1e-3, 1e-2], |settings, reach| Settings { reach, ..settings });
+    let cuts = named(&[0.0, 0.003, 0.01, 0.03, 0.1, 0.3], |settings, cut| Settings { cut, ..settings });
     let windows = named(&[0.0, 0.002, 0.005, 0.01, 0.03], |settings, window| Settings { window, ..settings });
     let clamps = [true, false].map(|clamp| (format!("{clamp}"), Settings { clamp, ..default }));
     let sweep = |knob, question, settings: Vec<_>, chosen: &str| {
@@ -33,6 +34,7 @@ pub fn curves(measurement: &Measurement<'_>, shading: &Shading) -> Outcome<Vec<C
             "0.02",
         )?,
         sweep("reach", "Which spheres may a cluster of receivers leave out?", reaches, "0.00001")?,
+        sweep("cut", "When may a node of the hierarchy stand for what it holds?", cuts, "0.03")?,
         sweep("window", "Does deringing pay?", windows, "0")?,
         sweep("clamp", "Is a result made one that a visibility can be?", clamps.into(), "true")?,
     ];
@@ -61,14 +63,11 @@ fn curve(
 ) -> Outcome<Curve> {
     let rival = |(name, settings): (String, Settings)| Rival { name, settings, kernel: SphereKernel::Pass };
     let rivals: Vec<Rival> = settings.into_iter().map(rival).collect();
-    let receivers = Receivers {
-        positions: &shading.positions,
-        normals: Some(&shading.normals),
-        spheres: &shading.spheres,
-    };
+    let (positions, normals) = (&shading.positions, Some(&shading.normals[..]));
+    let timed = measurement
+        .interleaved(&rivals, positions, normals, |rival| shading.blockers(rival.settings.order))?;
     let mut points = Vec::new();
-    for ((mut point, values), rival) in measurement.interleaved(&rivals, &receivers)?.into_iter().zip(&rivals)
-    {
+    for ((mut point, values), rival) in timed.into_iter().zip(&rivals) {
         point.error.model = Some(shading.error(rival.settings.order, Some(&values))?);
         points.push(point);
     }

@@ -1,10 +1,10 @@
 //! Every exponential over receivers, among chained products: error against time, by order and by number of blockers.
 
-use airglow::shadow::bench::{Scene as Receivers, SphereKernel};
+use airglow::shadow::bench::SphereKernel;
 use airglow::shadow::families::Random;
 use airglow::shadow::reference::{caps, rms, truth};
-use airglow::shadow::{Exponential, MAX_ORDER, MIN_ORDER, Settings, ShadowError, Sphere};
-use glam::DVec3;
+use airglow::shadow::{Blockers, Exponential, MAX_ORDER, MIN_ORDER, Settings, ShadowError, Sphere};
+use glam::{DMat4, DVec3};
 
 use super::{Measurement, Rival};
 use crate::failure::{Failure, Outcome};
@@ -99,8 +99,9 @@ fn measured(
     spheres: &[Sphere],
     truths: &[Vec<f64>],
 ) -> Outcome<Vec<Point>> {
-    let receivers = Receivers { positions: ground, normals: None, spheres };
-    let timed = measurement.interleaved(rivals, &receivers)?;
+    let blockers = Blockers::default();
+    blockers.set(spheres, DMat4::IDENTITY).map_err(Failure::work)?;
+    let timed = measurement.interleaved(rivals, ground, None, |_| blockers.clone())?;
     let with_error = |((mut point, values), rival): ((Point, Vec<f32>), &Rival)| {
         let width = rival.settings.order * rival.settings.order;
         let errors = probes(measurement, ground.len()).zip(truths).map(|(probe, truth)| {

@@ -6,8 +6,8 @@ mod methods;
 mod numbers;
 mod shading;
 
-use airglow::shadow::bench::{Bench, Scene as Receivers, SphereKernel};
-use airglow::shadow::{Settings, Shadow, ShadowError};
+use airglow::shadow::bench::{Bench, SphereKernel};
+use airglow::shadow::{Blockers, Settings, Shadow, ShadowError};
 use airglow_scene::Scene;
 
 use super::interleave::{self, Rounds};
@@ -88,23 +88,31 @@ impl Measurement<'_> {
         Ok((shading.words(), knobs::curves(self, &shading)?))
     }
 
-    /// Times rivals in turn over receivers; each with the visibility and the counts of its last run.
-    fn interleaved(&self, rivals: &[Rival], receivers: &Receivers<'_>) -> Outcome<Vec<(Point, Vec<f32>)>> {
+    /// Times rivals in turn over receivers, with their normals where they have them; each with the visibility and the counts
+    /// of its last run, behind the blockers of each.
+    fn interleaved(
+        &self,
+        rivals: &[Rival],
+        positions: &[[f32; 3]],
+        normals: Option<&[[f32; 3]]>,
+        blockers: impl Fn(&Rival) -> Blockers,
+    ) -> Outcome<Vec<(Point, Vec<f32>)>> {
         let run = self.device.bench();
         let bench = Bench { context: self.device.context(), run: &run };
         let made: Result<Vec<Shadow>, ShadowError> =
             rivals.iter().map(|rival| bench.shadow(rival.settings, rival.kernel)).collect();
         let made = made.map_err(Failure::work)?;
+        let blockers: Vec<Blockers> = rivals.iter().map(blockers).collect();
         let mut last = vec![(Vec::new(), 0); rivals.len()];
         let times = interleave::measure(self.effort.rounds, rivals.len(), |rival| {
-            let frame = bench.frame(&made[rival], receivers, 1)?;
+            let frame = bench.blocked(&made[rival], positions, normals, &blockers[rival], 1)?;
             last[rival] = (frame.values, frame.counts.spheres);
             Ok::<f64, ShadowError>(1e3 * frame.times.first().map_or(0.0, std::time::Duration::as_secs_f64))
         });
         let rows = times.map_err(Failure::work)?.into_iter().zip(last).zip(rivals);
         Ok(rows
             .map(|((milliseconds, (values, spheres)), rival)| {
-                let count = receivers.positions.len() as u64;
+                let count = positions.len() as u64;
                 let order = rival.settings.order as u64;
                 let point = Point {
                     setting: rival.name.clone(),

@@ -27,8 +27,9 @@ pub fn products(measurement: &Measurement<'_>) -> Outcome<Vec<Number>> {
     let bench = Bench { context: measurement.device.context(), run: &run };
     let mut numbers = Vec::new();
     for order in MIN_ORDER..=MAX_ORDER {
-        let value =
-            |at: usize| if at % (order * order) == 0 { 3.5 } else { ((at * 37 % 101) as f32 - 50.0) * 1e-5 };
+        let value = |at: usize| {
+            if at.is_multiple_of(order * order) { 3.5 } else { ((at * 37 % 101) as f32 - 50.0) * 1e-5 }
+        };
         let rows: Vec<f32> = (0..ROWS * order * order).map(value).collect();
         for (name, kernel) in
             [("product", RowKernel::Product as fn(u32) -> RowKernel), ("square", RowKernel::Square)]

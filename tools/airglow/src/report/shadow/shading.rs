@@ -1,20 +1,22 @@
 //! The ground around a scene's figures: its colours by rays, and by visibility of some order.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use airglow::math::sh::product::TripleProduct;
 use airglow::math::sh::rotation::Rotation;
 use airglow::math::sh::{coefficient_count, evaluate, zonal};
 use airglow::math::sphere::equirect::Projector;
-use airglow::shadow::{MAX_ORDER, Sphere};
+use airglow::shadow::{Blockers, MAX_ORDER, MIN_ORDER, Sphere};
 use airglow_bake::{Mesh, Occluder, Occluders, Probe};
 use airglow_scene::Scene;
-use glam::{DVec3, Mat4, Vec3};
+use glam::{DMat4, DVec3, Mat4};
 
 use super::Measurement;
 use crate::failure::{Failure, Outcome};
 use crate::host::ball::Ball;
 use crate::host::environment_samples::EnvironmentSamples;
+use crate::host::shadow::Blocking;
 use crate::host::{spheres, transfer, truth};
 
 /// Where fits are kept.
@@ -28,6 +30,8 @@ const MARGIN: f32 = 1.0;
 pub struct Shading {
     /// The spheres of all figures and blockers, in the world.
     pub spheres: Vec<Sphere>,
+    /// The same in their hierarchies, with the ratios of each order.
+    blockers: BTreeMap<usize, Blockers>,
     /// Receivers.
     pub positions: Vec<[f32; 3]>,
     /// All upwards.
@@ -45,7 +49,17 @@ impl Shading {
         let Some(environment) = &scene.environment else {
             return Err(Failure::input("the scene has no environment to cast shadows from"));
         };
-        let spheres = world_spheres(scene, measurement)?;
+        let fitted = spheres::of_scene(scene, Path::new(CACHE), measurement.output)?;
+        let (mut spheres, mut blockers) = (Vec::new(), BTreeMap::new());
+        for order in MIN_ORDER..=MAX_ORDER {
+            let nodes = Blocking::new(scene, fitted.clone(), order)?.nodes(scene, 0.0)?;
+            spheres = nodes.iter().filter(|node| node.subtree == 1).map(|node| node.sphere).collect();
+            let own: &Blockers = blockers.entry(order).or_default();
+            own.set_nodes(&nodes, DMat4::IDENTITY).map_err(Failure::work)?;
+        }
+        if spheres.is_empty() {
+            return Err(Failure::input("nothing moves in the scene; add a [[figure]] or a [[blocker]]"));
+        }
         let positions = ground(&spheres);
         let normals = vec![[0.0, 1.0, 0.0]; positions.len()];
         let balls: Vec<Ball> = scene.blockers.iter().map(Ball::new).collect();
@@ -53,8 +67,9 @@ impl Shading {
         let none: Vec<_> = scene.instances.iter().map(|_| None).collect();
         let place =
             |number: usize| transfer::occluder(scene, number, scene.instances[number].transform, &none);
-        let blockers: Vec<Occluder<'_>> = moving.map(place).chain(balls.iter().map(Ball::occluder)).collect();
-        let occluders = Occluders::build(&blockers).map_err(Failure::input)?;
+        let occluding: Vec<Occluder<'_>> =
+            moving.map(place).chain(balls.iter().map(Ball::occluder)).collect();
+        let occluders = Occluders::build(&occluding).map_err(Failure::input)?;
         let indices: Vec<u32> = (0..positions.len() as u32 / 3 * 3).collect();
         let mesh = Mesh { name: "ground", positions: &positions, normals: &normals, indices: &indices };
         let probe = Probe::new(&mesh, Mat4::IDENTITY, &occluders, f32::INFINITY).map_err(Failure::input)?;
@@ -67,7 +82,7 @@ impl Shading {
         let rotation = Rotation::from_quaternion(MAX_ORDER, environment.rotation.as_dquat());
         let light = rotation.and_then(|rotation| rotation.apply_rgb(&light)).map_err(Failure::input)?;
         let name = environment.file.display().to_string();
-        Ok(Self { spheres, positions, normals, truth, light, name })
+        Ok(Self { spheres, blockers, positions, normals, truth, light, name })
     }
 
     /// What was measured on.
@@ -78,6 +93,11 @@ impl Shading {
             self.spheres.len(),
             self.name
         )
+    }
+
+    /// What casts shadows at an order.
+    pub fn blockers(&self, order: usize) -> Blockers {
+        self.blockers.get(&order).cloned().unwrap_or_default()
     }
 
     /// Root mean square of the colours' difference from the truth's, over the truth's, for visibility of an order at every
@@ -118,27 +138,6 @@ fn upwards(order: usize) -> Outcome<Vec<f64>> {
     evaluate(order, DVec3::Y, &mut basis).map_err(Failure::work)?;
     let band = |(i, y): (usize, f64)| factors[i.isqrt()] / std::f64::consts::PI * y;
     Ok(basis.into_iter().enumerate().map(band).collect())
-}
-
-/// The spheres of figures, where they stand, and of blockers.
-fn world_spheres(scene: &Scene, measurement: &Measurement<'_>) -> Outcome<Vec<Sphere>> {
-    let fitted = spheres::of_scene(scene, Path::new(CACHE), measurement.output)?;
-    let mut all: Vec<Sphere> = scene
-        .blockers
-        .iter()
-        .map(|blocker| Sphere {
-            center: Vec3::from(blocker.center).as_dvec3(),
-            radius: f64::from(blocker.radius),
-        })
-        .collect();
-    for own in &fitted {
-        let pose = scene.pose(&scene.figures[own.figure], 0.0);
-        all.extend(own.in_pose(scene, &pose));
-    }
-    if all.is_empty() {
-        return Err(Failure::input("nothing moves in the scene; add a [[figure]] or a [[blocker]]"));
-    }
-    Ok(all)
 }
 
 /// A grid of receivers at the height of the lowest sphere's lower end, as wide as all spheres and a margin.
