@@ -653,6 +653,62 @@ typedef uint32_t AirglowPlanFormat;
 #endif // __cplusplus
 
 /**
+ * How the error of a sample that serves many vertices is estimated.
+ */
+enum AirglowRadianceOracle
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The change of the vertices' colours, by their transfer vectors; radiance.
+   */
+  AIRGLOW_RADIANCE_ORACLE_TRANSFER = 0,
+  /**
+   * Brightness times variation; radiance times metres.
+   */
+  AIRGLOW_RADIANCE_ORACLE_ARGUED = 1,
+  /**
+   * As it is printed in the thesis; radiance a metre.
+   */
+  AIRGLOW_RADIANCE_ORACLE_PRINTED = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowRadianceOracle AirglowRadianceOracle;
+#else
+typedef uint32_t AirglowRadianceOracle;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * What a step of the pass uses.
+ */
+enum AirglowRadianceResource
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Written, a buffer of the host's for each part, whose place in the receiver is the index: `3 * order^2` floats a
+   * vertex, in the space of the part, as relighting takes light of each vertex
+   * (`AIRGLOW_RELIGHT_RESOURCE_VERTEX_LIGHT`).
+   */
+  AIRGLOW_RADIANCE_RESOURCE_VERTEX_LIGHT = 0,
+  /**
+   * A buffer of the library's own; the index counts them, the name says which.
+   */
+  AIRGLOW_RADIANCE_RESOURCE_OWN = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowRadianceResource AirglowRadianceResource;
+#else
+typedef uint32_t AirglowRadianceResource;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * What a step of the pass uses. With `AIRGLOW_RELIGHT_RESOURCE_VECTORS` the index is a mesh's place in the pass, with
  * `..._VERTEX_LIGHT`, `..._VISIBILITY` and `..._NORMALS` an instance's in the frame; otherwise it is 0.
  */
@@ -828,6 +884,16 @@ typedef struct AirglowNormals AirglowNormals;
  * One thread at a time. It may outlive its pass.
  */
 typedef struct AirglowPrepared AirglowPrepared;
+
+/**
+ * The radiance pass: its kernels for one context and one choice of settings. Any thread may use it.
+ */
+typedef struct AirglowRadiance AirglowRadiance;
+
+/**
+ * Vertices that light is sampled for, on the device, with room for samples. Any thread may use it.
+ */
+typedef struct AirglowRadianceReceiver AirglowRadianceReceiver;
 
 /**
  * The relight pass: kernels, tables and meshes for one context and one choice of settings. Any thread may use it.
@@ -1839,6 +1905,195 @@ typedef struct AirglowBinding {
 } AirglowBinding;
 
 /**
+ * What the light of near emitters is prepared for. Zero is the default of every field.
+ */
+typedef struct AirglowRadianceSettings {
+  /**
+   * `sizeof(AirglowRadianceSettings)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Bands of light vectors, 3 to 6: that of the relighting they go into. 0 is 4.
+   */
+  uint32_t order;
+  /**
+   * 1: samples hold no gradients.
+   */
+  uint32_t without_gradients;
+  /**
+   * Texels along a side of a cube face, a multiple of 8 to 128. 0 is 8.
+   */
+  uint32_t face;
+  /**
+   * Rays along a side of a texel: 1, 2 or 4. 0 is 4.
+   */
+  uint32_t rays;
+  /**
+   * An `AirglowRadianceOracle`.
+   */
+  uint32_t oracle;
+  /**
+   * Most samples of a receiver, to 65536: they have their memory from the start. 0 is 4096.
+   */
+  uint32_t limit;
+  /**
+   * Most levels that a split goes down, to 8. 0 is 3.
+   */
+  uint32_t stride;
+  /**
+   * Nodes estimated above it are split, in the oracle's unit. 0 is 0.01, below 0 is 0.
+   */
+  double bound;
+  /**
+   * What part of the light that emitters would send unhidden a sample is taken to miss, to 1. 0 is 0.1, below 0 is 0.
+   */
+  double hidden;
+  /**
+   * By what part of the bound samples may be stale before they are taken again when emitters move. 0 is 0.25; below 0
+   * all are taken again in each such frame, and half the memory is needed.
+   */
+  double keep;
+  /**
+   * 1: samples are never taken in closed form.
+   */
+  uint32_t without_closed_forms;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+} AirglowRadianceSettings;
+
+/**
+ * A triangle that emits the same radiance from both sides; one of radiance zero blocks light. Elements of arrays never
+ * grow.
+ */
+typedef struct AirglowEmitter {
+  /**
+   * Three corners, metres, in the space of the receiver's positions.
+   */
+  double corners[3][3];
+  /**
+   * Linear red, green and blue radiance, W/sr/m2.
+   */
+  double radiance[3];
+} AirglowEmitter;
+
+/**
+ * A sphere that emits the same radiance everywhere; one of radiance zero blocks light. Elements of arrays never grow.
+ */
+typedef struct AirglowEmitterSphere {
+  /**
+   * Its centre, metres, in the space of the receiver's positions.
+   */
+  double center[3];
+  /**
+   * Its radius, metres.
+   */
+  double radius;
+  /**
+   * Linear red, green and blue radiance, W/sr/m2.
+   */
+  double radiance[3];
+} AirglowEmitterSphere;
+
+/**
+ * What a receiver is lit by.
+ */
+typedef struct AirglowRadianceLights {
+  /**
+   * `sizeof(AirglowRadianceLights)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * Triangles that emit or block.
+   */
+  const struct AirglowEmitter *emitters;
+  /**
+   * How many.
+   */
+  size_t emitter_count;
+  /**
+   * Spheres that emit or block.
+   */
+  const struct AirglowEmitterSphere *spheres;
+  /**
+   * How many.
+   */
+  size_t sphere_count;
+  /**
+   * Light from far away about the axes of that space, which every vertex gets as well: red, green and blue of each of
+   * `order^2` coefficients of spherical harmonics. Null for none.
+   */
+  const float *distant;
+  /**
+   * Coefficients of it: `order^2`, or 0.
+   */
+  size_t distant_count;
+} AirglowRadianceLights;
+
+/**
+ * Consecutive vertices of a receiver whose light lies in a buffer of its own: an instance. Elements of arrays never grow.
+ */
+typedef struct AirglowRadiancePart {
+  /**
+   * The first vertex.
+   */
+  uint32_t first;
+  /**
+   * How many.
+   */
+  uint32_t count;
+  /**
+   * Turns directions from the space of positions and emitters into that of the part's light, orthogonal, column-major:
+   * the inverse of an instance's rotation, mirrored or not. All zero is the identity.
+   */
+  double turn[9];
+} AirglowRadiancePart;
+
+/**
+ * Vertices in one space, that of the emitters: a mesh, or all instances placed.
+ */
+typedef struct AirglowRadianceReceiverInfo {
+  /**
+   * `sizeof(AirglowRadianceReceiverInfo)`.
+   */
+  uint32_t struct_size;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+  /**
+   * Three floats a vertex, metres.
+   */
+  const float *positions;
+  /**
+   * Vertices.
+   */
+  size_t vertex_count;
+  /**
+   * Transfer vectors (`airglow_bake`), `order^2` values a vertex, that say where light matters; null for vectors of
+   * length 1.
+   */
+  const float *transfer;
+  /**
+   * Values of them: `order^2 * vertex_count`, or 0.
+   */
+  size_t transfer_count;
+  /**
+   * The instances; null for one of all vertices.
+   */
+  const struct AirglowRadiancePart *parts;
+  /**
+   * How many; 0 for one of all vertices.
+   */
+  size_t part_count;
+} AirglowRadianceReceiverInfo;
+
+/**
  * What the pass is prepared for. Zero is the default of every field.
  */
 typedef struct AirglowRelightSettings {
@@ -2549,6 +2804,102 @@ AirglowStatus airglow_prepared_forget(const struct AirglowPrepared *prepared, st
  * The pointer is not used again.
  */
 void airglow_prepared_drop(struct AirglowPrepared *prepared);
+
+/**
+ * Adds what the pass asks of a device with these settings.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says.
+ */
+AirglowStatus airglow_radiance_require(struct AirglowRequirements *requirements,
+                                       const struct AirglowRadianceSettings *settings,
+                                       struct AirglowError *error);
+
+/**
+ * Makes the pass: its kernels.
+ *
+ * The caller promises:
+ * `settings` points at as many bytes as it says; `radiance` may be written.
+ */
+AirglowStatus airglow_radiance_new(const struct AirglowContext *context,
+                                   const struct AirglowRadianceSettings *settings,
+                                   struct AirglowRadiance **radiance,
+                                   struct AirglowError *error);
+
+/**
+ * Drops the pass; what was made and prepared stays usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_radiance_drop(struct AirglowRadiance *radiance);
+
+/**
+ * Writes the plan that the library's graph makes of the light of a receiver's vertices: steps, barriers, lifetimes and
+ * bytes, and what was left out, why, and what would bring it back. The format is an `AirglowPlanFormat`.
+ *
+ * The caller promises:
+ * `lights` as with `airglow_radiance_prepare`; `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_radiance_plan(const struct AirglowRadiance *radiance,
+                                    const struct AirglowRadianceReceiver *receiver,
+                                    const struct AirglowRadianceLights *lights,
+                                    uint32_t format,
+                                    struct AirglowText *text,
+                                    struct AirglowError *error);
+
+/**
+ * Prepares the light of a receiver's vertices. `*prepared` gets null where no emitter gives light, or no vertex reflects
+ * any: then there is nothing to record, and no light of vertices.
+ *
+ * The caller promises:
+ * `lights` points at as many bytes as it says, and its arrays have as many elements as it says; `prepared` may be written.
+ */
+AirglowStatus airglow_radiance_prepare(const struct AirglowRadiance *radiance,
+                                       const struct AirglowRadianceReceiver *receiver,
+                                       const struct AirglowRadianceLights *lights,
+                                       struct AirglowPrepared **prepared,
+                                       struct AirglowError *error);
+
+/**
+ * Sets the lights of a prepared frame, which count from the next recording on; while emitters stay, no sample is taken
+ * again. On an error the old ones stay.
+ *
+ * The caller promises:
+ * As `airglow_radiance_prepare`.
+ */
+AirglowStatus airglow_radiance_set(const struct AirglowPrepared *prepared,
+                                   const struct AirglowRadianceLights *lights,
+                                   struct AirglowError *error);
+
+/**
+ * Makes a receiver: the tree over its vertices, and its memory on the device. Copies go to the device with the first frame
+ * that is recorded with it.
+ *
+ * The caller promises:
+ * `info` points at as many bytes as it says, and its arrays have as many elements as it says; `receiver` may be written.
+ */
+AirglowStatus airglow_radiance_receiver_new(const struct AirglowRadiance *radiance,
+                                            const struct AirglowRadianceReceiverInfo *info,
+                                            struct AirglowRadianceReceiver **receiver,
+                                            struct AirglowError *error);
+
+/**
+ * Takes the samples of a receiver anew with the next frame that is recorded: for a host that threw away a recorded frame.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_radiance_forget_samples(const struct AirglowRadianceReceiver *receiver,
+                                              struct AirglowError *error);
+
+/**
+ * Drops a receiver; what was prepared with it stays usable. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_radiance_receiver_drop(struct AirglowRadianceReceiver *receiver);
 
 /**
  * Adds what the pass asks of a device with these settings.

@@ -32,6 +32,8 @@ const ROOMS: &[Checks] = &[
     crate::fog::conformance::CHECKS,
     #[cfg(feature = "normals")]
     crate::normals::conformance::CHECKS,
+    #[cfg(feature = "radiance")]
+    crate::radiance::conformance::CHECKS,
     #[cfg(feature = "relight")]
     crate::relight::conformance::CHECKS,
     #[cfg(feature = "shadow")]

@@ -22,6 +22,8 @@ mod pass;
 pub mod physical;
 pub mod plan;
 pub mod prepared;
+#[cfg(feature = "radiance")]
+pub mod radiance;
 #[cfg(feature = "relight")]
 pub mod relight;
 pub mod requirements;

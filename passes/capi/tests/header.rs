@@ -53,6 +53,21 @@ fn so_do_those_of_normals() {
     assert_sizes("normals_sizes.c", &sizes);
 }
 
+#[cfg(feature = "radiance")]
+#[test]
+fn so_do_those_of_radiance() {
+    use airglow_capi::radiance::{lights::*, receiver::*, settings::*};
+    let sizes = sizes![
+        AirglowEmitter,
+        AirglowEmitterSphere,
+        AirglowRadianceLights,
+        AirglowRadiancePart,
+        AirglowRadianceReceiverInfo,
+        AirglowRadianceSettings,
+    ];
+    assert_sizes("radiance_sizes.c", &sizes);
+}
+
 #[cfg(feature = "shadow")]
 #[test]
 fn so_do_those_of_shadow() {

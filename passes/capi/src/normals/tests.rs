@@ -44,7 +44,7 @@ fn what_no_map_is_is_refused_and_named() {
             (AirglowNormalsSettings { lobes: 7, ..good }, "lobes"),
             (AirglowNormalsSettings { lobes: 3, ..good }, "1, 2, 4 or 6"),
             (AirglowNormalsSettings { iterations: 33, ..good }, "iterations"),
-            (AirglowNormalsSettings { storage: 2, ..good }, "storage"),
+            (AirglowNormalsSettings { storage: 9, ..good }, "storage"),
             (AirglowNormalsSettings { sharpest: f64::NAN, ..good }, "sharpest"),
         ] {
             let said =

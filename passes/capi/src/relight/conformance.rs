@@ -34,7 +34,7 @@ const VERTICES: u32 = 1500;
 const ROTATION: [f64; 4] = [0.0, 0.342_897_807_455_451_34, 0.0, 0.939_372_712_847_378_9];
 
 /// Numbers in [0, 1): the fractional parts of multiples of the golden ratio.
-fn numbers(count: usize, first: f64) -> Vec<f32> {
+pub(crate) fn numbers(count: usize, first: f64) -> Vec<f32> {
     (0..count).map(|i| (first + i as f64 * 0.618_033_988_749_894_9).fract() as f32).collect()
 }
 
@@ -182,12 +182,19 @@ fn said(failure: Failure) -> Refusal {
 
 /// What the kit holds the pass to.
 pub(crate) const CHECKS: Checks = Checks {
-    requirements: || Ok(asked(0)?.and(&asked(1)?)),
+    requirements: || {
+        let asked = asked(0)?.and(&asked(1)?);
+        #[cfg(all(feature = "radiance", feature = "shadow"))]
+        let asked = asked.and(&super::joined::requirements()?);
+        Ok(asked)
+    },
     checks: &[
         (c"relight: compute, an environment in the host's image", |host| check(host, (0, false, None))),
         (c"relight: compute, an environment as texels", |host| check(host, (0, true, None))),
         (c"relight: fragment, an environment in the host's image", |host| check(host, (1, false, None))),
         (c"relight: a host with Z up, left-handed, exposed", |host| check(host, (0, false, Some(&z_up())))),
+        #[cfg(all(feature = "radiance", feature = "shadow"))]
+        (c"relight: light of near emitters, and what moving spheres leave of it", super::joined::check),
     ],
 };
 

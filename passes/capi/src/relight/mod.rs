@@ -5,6 +5,8 @@
 pub(crate) mod conformance;
 pub mod frame;
 pub mod health;
+#[cfg(all(any(test, feature = "conformance"), feature = "radiance", feature = "shadow"))]
+mod joined;
 pub mod plan;
 pub mod prepared;
 pub mod resources;
