@@ -25,6 +25,7 @@ use crate::report::relight::workload::{Effort, Workload};
 #[command(after_help = "Example:
   airglow explain relight assets/scenes/spot.toml
   airglow explain fog assets/scenes/street.toml
+  airglow explain normals assets/scenes/weave.toml
   airglow explain radiance assets/scenes/blocks.toml
   airglow explain shadow assets/scenes/walkers.toml")]
 pub struct Arguments {
@@ -82,6 +83,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     #[cfg(feature = "radiance")]
     if arguments.pass == Pass::Radiance {
         return radiance(&scene, &arguments.scene.cache, global, output);
+    }
+    #[cfg(feature = "normals")]
+    if arguments.pass == Pass::Normals {
+        return normals(scene, global, output);
     }
     #[cfg(feature = "shadow")]
     if arguments.pass == Pass::Shadow {
@@ -151,6 +156,23 @@ fn radiance(scene: &Scene, cache: &std::path::Path, global: &Global, output: &Ou
         Ok(Explanation { machine, workload, knobs: knobs.collect() })
     })?;
     output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
+}
+
+/// What is kept of each normal map, chosen by its material.
+#[cfg(feature = "normals")]
+fn normals(scene: Scene, global: &Global, output: &Output) -> Outcome {
+    use crate::report::normals::{Effort, Map, Measurement, requirements};
+    let maps = Map::of_scenes(&[scene])?;
+    let explanation = device::with(global, &requirements(), |device| {
+        let curves = Measurement { device, effort: Effort::new(true), output }.explain(&maps)?;
+        let knobs = curves.into_iter().map(|curve| {
+            let setting = curve.chosen.as_ref().map_or(String::new(), |chosen| chosen.setting.clone());
+            knob(curve, setting, "the map and its material".to_owned())
+        });
+        let workload = maps.iter().map(Map::words).collect::<Vec<_>>().join(", ");
+        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+    })?;
+    output.result(&explanation, |explanation| text(explanation, None))
 }
 
 /// The knobs of shadows, none of which a scene file names but the order.

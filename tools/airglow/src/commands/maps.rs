@@ -10,6 +10,7 @@ use glam::{DQuat, Mat4};
 use serde::Serialize;
 
 use crate::cli::Global;
+use crate::commands::maps_baked;
 use crate::commands::render::size;
 use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
@@ -17,6 +18,7 @@ use crate::files;
 use crate::host::device::{self, Device};
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
+use crate::host::mapped;
 use crate::host::renderer::{Air, Renderer, Settings};
 use crate::output::Output;
 use crate::report::lines::{self, Series};
@@ -29,7 +31,9 @@ use crate::report::lines::{self, Series};
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   airglow maps assets/scenes/grooves.toml -o out/grooves --size 640x150
-  airglow maps assets/scenes/weave.toml -o out/weave --size 240x200 --distances 1,4,16")]
+  airglow maps assets/scenes/weave.toml -o out/weave --size 240x200 --distances 1,4,16
+  airglow maps assets/scenes/weave.toml -o out/weave --filters lobes,octahedral,harmonics
+  airglow maps assets/scenes/weave.toml -o out/weave --bake")]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneOptions,
@@ -48,6 +52,12 @@ pub struct Arguments {
     /// Frames of the zoom, from the first of --distances to the last; 0 for none.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1000))]
     zoom: u32,
+    /// Filters to be compared with the truth: the further rows.
+    #[arg(long, value_name = "FILTERS", default_value = "lobes,toksvig,lean,mip", value_delimiter = ',')]
+    filters: Vec<Filter>,
+    /// Draw nothing: write the lobes of each map to a KTX2 file in BC5 blocks, and say what each storage loses.
+    #[arg(long)]
+    bake: bool,
     /// Samples along each side of a pixel, of all filters but the truth.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     samples: u32,
@@ -55,9 +65,6 @@ pub struct Arguments {
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=4096))]
     passes: u32,
 }
-
-/// The rows, from the top.
-const FILTERS: [Filter; 5] = [Filter::Texels, Filter::Lobes, Filter::Toksvig, Filter::Lean, Filter::Mip];
 
 /// One way to filter, at all distances.
 #[derive(Serialize)]
@@ -76,10 +83,17 @@ struct Row {
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
+    if arguments.bake {
+        let requirements = mapped::requirements(&scene);
+        let baked = device::with(global, &requirements, |device| {
+            maps_baked::write(device, &scene, &arguments.output)
+        })?;
+        return output.result(&baked, |baked| maps_baked::text(baked));
+    }
     let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
     let (rows, exposure) = device::with(global, &source.requirements(&scene), |device| {
         let mut rows = Vec::new();
-        for filter in FILTERS {
+        for filter in [Filter::Texels].into_iter().chain(arguments.filters.iter().copied()) {
             rows.push(draw(device, &scene, &source, filter, arguments, output)?);
         }
         let truth: &Row = &rows[0];

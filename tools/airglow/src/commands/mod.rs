@@ -13,6 +13,8 @@ pub mod film;
 pub mod spheres;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod maps;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod maps_baked;
 #[cfg(feature = "relight")]
 pub mod plan;
 #[cfg(feature = "relight")]

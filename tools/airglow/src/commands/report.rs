@@ -31,6 +31,7 @@ use crate::report::write;
   airglow report relight --scene assets/scenes/demo.toml -o out/report --quick
   airglow report fog -o out/fog
   airglow report radiance -o out/radiance
+  airglow report normals -o out/normals
   airglow report shadow -o out/shadow
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
@@ -39,8 +40,8 @@ pub struct Arguments {
     #[arg(value_enum, default_value_t = Pass::Relight)]
     pass: Pass,
     /// The scene to light: a scene file or a glTF file. For relight assets/scenes/spot.toml unless given, for fog
-    /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml, for shadow
-    /// assets/scenes/walkers.toml.
+    /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml, for normals
+    /// assets/scenes/grooves.toml and weave.toml, for shadow assets/scenes/walkers.toml.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
@@ -68,6 +69,9 @@ pub enum Pass {
     /// Incident radiance of near emitters.
     #[cfg(feature = "radiance")]
     Radiance,
+    /// Normal maps filtered as distributions of normals.
+    #[cfg(feature = "normals")]
+    Normals,
     /// Soft shadows of what moves.
     #[cfg(feature = "shadow")]
     Shadow,
@@ -82,6 +86,8 @@ impl Pass {
             Self::Fog => "assets/scenes/street.toml",
             #[cfg(feature = "radiance")]
             Self::Radiance => "assets/scenes/blocks.toml",
+            #[cfg(feature = "normals")]
+            Self::Normals => "assets/scenes/grooves.toml",
             #[cfg(feature = "shadow")]
             Self::Shadow => "assets/scenes/walkers.toml",
         }
@@ -94,6 +100,8 @@ impl Pass {
             Self::Fog => "fog",
             #[cfg(feature = "radiance")]
             Self::Radiance => "radiance",
+            #[cfg(feature = "normals")]
+            Self::Normals => "normals",
             #[cfg(feature = "shadow")]
             Self::Shadow => "shadow",
         }
@@ -103,6 +111,11 @@ impl Pass {
 impl Arguments {
     fn scene(&self) -> PathBuf {
         self.scene.clone().unwrap_or_else(|| PathBuf::from(self.pass.scene()))
+    }
+
+    /// Whether the pass has more than one scene of its own.
+    fn is_of_normals(&self) -> bool {
+        self.pass.name() == "normals"
     }
 }
 
@@ -115,6 +128,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Pass::Fog => fog(arguments, global, output)?,
             #[cfg(feature = "radiance")]
             Pass::Radiance => radiance(arguments, global, output)?,
+            #[cfg(feature = "normals")]
+            Pass::Normals => normals(arguments, global, output)?,
             #[cfg(feature = "shadow")]
             Pass::Shadow => shadow(arguments, global, output)?,
         }]
@@ -163,6 +178,31 @@ fn fog(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Repor
             command: command(arguments, &device.machine()),
             date: today(),
             workload: measured.workload,
+            remarks: measured.remarks,
+            curves: measured.curves,
+            numbers: measured.numbers,
+        })
+    })
+}
+
+/// The report on normal maps: those of a scene, or of the two that are made for it.
+#[cfg(feature = "normals")]
+fn normals(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
+    use crate::report::normals::{Effort, Map, Measurement, requirements};
+    let more = arguments.scene.is_none().then(|| PathBuf::from("assets/scenes/weave.toml"));
+    let paths = [arguments.scene()].into_iter().chain(more);
+    let scenes =
+        paths.map(|path| SceneOptions::plain(&path, None).load(output)).collect::<Outcome<Vec<_>>>()?;
+    let maps = Map::of_scenes(&scenes)?;
+    device::with(global, &requirements(), |device| {
+        let measured = Measurement { device, effort: Effort::new(arguments.quick), output }.all(&maps)?;
+        let names: Vec<_> = maps.iter().map(Map::words).collect();
+        Ok(Report {
+            pass: "normals".to_owned(),
+            machine: device.machine(),
+            command: command(arguments, &device.machine()),
+            date: today(),
+            workload: names.join(", "),
             remarks: measured.remarks,
             curves: measured.curves,
             numbers: measured.numbers,
@@ -229,11 +269,12 @@ fn command(arguments: &Arguments, machine: &Machine) -> String {
         .environment
         .as_ref()
         .map_or(String::new(), |path| format!(" --environment {}", path.display()));
+    let named = !arguments.is_of_normals() || arguments.scene.is_some();
+    let scene = if named { format!(" --scene {}", arguments.scene().display()) } else { String::new() };
     let quick = if arguments.quick { " --quick" } else { "" };
     format!(
-        "airglow report {} --scene {}{environment} -o {}{quick} --device \"{}\"",
+        "airglow report {}{scene}{environment} -o {}{quick} --device \"{}\"",
         arguments.pass.name(),
-        arguments.scene().display(),
         arguments.output.display(),
         machine.device
     )

@@ -14,6 +14,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(feature = "fog")]
 use super::complete::Complete;
+use super::filter::Look;
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
@@ -30,8 +31,8 @@ pub struct Pipelines {
     ambient: GraphicsPipeline,
     /// The same two in fog.
     fogged: Option<[GraphicsPipeline; 2]>,
-    /// The same two for surfaces with normal maps, by the layers of what is kept of these.
-    mapped: BTreeMap<u32, [GraphicsPipeline; 2]>,
+    /// The same two for surfaces with normal maps, by how they are looked up.
+    mapped: BTreeMap<Look, [GraphicsPipeline; 2]>,
     /// Behind the surfaces.
     pub sky: SkyPipelines,
     develop: ComputePipeline,
@@ -120,7 +121,7 @@ impl Pipelines {
         hdr: vk::Format,
         lights: bool,
         fogged: Option<&[u32]>,
-        mapped: &[(u32, Vec<u32>)],
+        mapped: &[(Look, Vec<u32>)],
     ) -> Result<Self, GpuError> {
         let fragment = shaders::scene_fragment(lights);
         let bindings = &DRAW_BINDINGS[..if lights { 4 } else { 3 }];
@@ -131,8 +132,8 @@ impl Pipelines {
         };
         let [lit, ambient] = both(plain, &fragment, bindings)?;
         let in_fog = |fragment| both(plain, fragment, &DRAW_BINDINGS);
-        let with_map = |(layers, fragment): &(u32, Vec<u32>)| {
-            Ok::<_, GpuError>((*layers, both(Inputs::Mapped, fragment, &MAPPED_BINDINGS)?))
+        let with_map = |(look, fragment): &(Look, Vec<u32>)| {
+            Ok::<_, GpuError>((*look, both(Inputs::Mapped, fragment, &MAPPED_BINDINGS)?))
         };
         Ok(Self {
             lit,
@@ -192,7 +193,10 @@ impl Pipelines {
         #[cfg(feature = "fog")]
         let lit = complete.as_ref().map_or(lit, |complete| complete.pipelines.of(colours.is_some()));
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
-        let mapped = if lobes.is_some() { BTreeMap::new() } else { self.mapped.clone() };
+        let mapped = self.mapped.clone();
+        // The complete model has no draw of normal maps.
+        #[cfg(feature = "fog")]
+        let mapped = if complete.is_some() { BTreeMap::new() } else { mapped };
         let glow = behind.and_then(|behind| behind.glow.clone());
         let (scene, view) = (Arc::clone(scene), view.clone());
         let (colours, lights) = (colours.cloned(), lights.cloned());
@@ -207,6 +211,8 @@ impl Pipelines {
             if let Some(lights) = &lights {
                 bound.push(Binding::uniform(3, &recorder.upload(&[*lights.constants])?));
             }
+            // Normal maps are lit through the medium, but not by its glow.
+            let of_maps = bound.len();
             if let Some(lobes) = &lobes {
                 bound.push(Binding::storage(4, resources.buffer(lobes)?));
             }
@@ -218,14 +224,15 @@ impl Pipelines {
             }
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
-                let map = draw.mapped.as_ref().and_then(|map| Some((map, mapped.get(&map.layers)?)));
+                let map = draw.mapped.as_ref().and_then(|map| Some((map, mapped.get(&map.look)?)));
                 let pipeline = match &map {
                     Some((_, [lit, _])) if colours.is_some() => lit,
                     Some((_, [_, ambient])) => ambient,
                     None => &pipeline,
                 };
                 let map = map.map(|(map, _)| &map.bindings);
-                record_draw(recorder, resources, pipeline, draw, &bound, map, colours)?;
+                let bound = if map.is_some() { &bound[..of_maps] } else { &bound[..] };
+                record_draw(recorder, resources, pipeline, draw, bound, map, colours)?;
             }
             if let Some(environment) = &scene.environment {
                 sky.record(recorder, &view, environment, glow.as_ref())?;

@@ -8,12 +8,27 @@ pub enum Filter {
     /// Mixtures of lobes, by the normals room.
     #[default]
     Lobes,
+    /// The same in four bytes a lobe.
+    Octahedral,
     /// The mean normal, whose length widens the reflection (Toksvig 2005).
     Toksvig,
+    /// Nine coefficients of spherical harmonics, by the normals room: for matt surfaces.
+    Harmonics,
     /// Mean and moments of the slope (Olano and Baker 2010).
     Lean,
     /// The mean normal, scaled to length 1: plain MIP-mapping.
     Mip,
     /// The map's own texels at every distance. With --samples and --passes this is the truth.
     Texels,
+}
+
+/// How what is kept of a map is looked up and shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Look {
+    /// So many array layers, once.
+    Layers(u32),
+    /// Four layers, at the quarters of a pixel's footprint, each shaded by itself.
+    Quarters,
+    /// Coefficients of harmonics.
+    Harmonics,
 }

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use airglow::normals::cost::whole;
 use airglow::normals::rivals::{self, Lean};
-use airglow::normals::{self, Brdf, Method, NormalMap, Normals, Sample, Settings};
+use airglow::normals::{self, Bench, Brdf, Method, NormalMap, Normals, Sample, Settings, Storage};
 use airglow_gpu::ash::vk;
-use airglow_gpu::{Binding, Execution, ImageView, Imports, Requirements, SamplerDesc, ViewDesc};
+use airglow_gpu::{Binding, Execution, ImageView, Imports, Requirements, SamplerDesc};
 use airglow_graph::{Access, Graph, LeftOut};
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
 use super::device::Device;
-use super::filter::Filter;
+use super::filter::{Filter, Look};
 use super::scene::{DeviceScene, Mapped};
 use super::{scene, shaders, upload};
 use crate::failure::{Failure, Outcome};
@@ -27,9 +28,9 @@ pub struct MappedMaterials {
     materials: Vec<Option<Mapped>>,
 }
 
-/// Whether the normal map of a material is drawn: the scene's own lights shine on it, in clear air.
+/// Whether the normal map of a material is drawn: the scene's own lights shine on it.
 pub fn is_drawn(scene: &Scene, material: &Material) -> bool {
-    let lit = !scene.lights.is_empty() && scene.medium.is_none() && material.class != MaterialClass::Unlit;
+    let lit = !scene.lights.is_empty() && material.class != MaterialClass::Unlit;
     lit && material.normal_texture.is_some()
 }
 
@@ -64,26 +65,29 @@ impl MappedMaterials {
         }
     }
 
-    /// The fragment stages that draw them, each by the layers that it reads.
-    pub fn fragments(&self) -> Vec<(u32, Vec<u32>)> {
-        let layers: BTreeSet<u32> = self.materials.iter().flatten().map(|mapped| mapped.layers).collect();
-        layers.into_iter().map(|layers| (layers, shaders::mapped_fragment(self.filter, layers))).collect()
+    /// The fragment stages that draw them, each by how it looks them up.
+    pub fn fragments(&self) -> Vec<(Look, Vec<u32>)> {
+        let looks: BTreeSet<Look> = self.materials.iter().flatten().map(|mapped| mapped.look).collect();
+        looks.into_iter().map(|look| (look, shaders::mapped_fragment(self.filter, look))).collect()
     }
 
     fn read(&mut self, device: &Device<'_>, scene: &Scene, material: &Material) -> Outcome<Option<Mapped>> {
         let Some(texture) = &material.normal_texture else { return Ok(None) };
         let Some(image) = scene.images.get(texture.image) else { return Ok(None) };
+        let map = normals(image, material.normal_scale)?;
         let image = scaled(image, material.normal_scale);
-        let vectors: Vec<[f32; 3]> = image.pixels.iter().map(|&texel| vector(texel)).collect();
-        let map = NormalMap::from_vectors(image.width as usize, image.height as usize, &vectors)
-            .map_err(|error| Failure::input(format!("{}: {error}", image.name)))?;
-        let coarse = match self.filter {
-            Filter::Lobes => match self.lobes(device, &map, material)? {
-                Some(lobes) => lobes,
-                None => kept(device, &map, mean)?,
-            },
-            Filter::Lean => kept(device, &map, slopes)?,
-            Filter::Toksvig | Filter::Mip | Filter::Texels => kept(device, &map, mean)?,
+        let own = match self.filter {
+            Filter::Lobes | Filter::Octahedral => self.chosen(device, &map, material)?,
+            Filter::Harmonics => harmonics(device, &map)?,
+            _ => None,
+        };
+        let (look, coarse) = match own {
+            Some(own) => own,
+            None => {
+                let keep = if self.filter == Filter::Lean { slopes } else { mean };
+                let coarse = kept(device, &map, keep)?;
+                (Look::Layers(coarse.desc().layers), coarse)
+            }
         };
         let context = device.context();
         let level = (image.width, image.height, image.pixels);
@@ -98,7 +102,7 @@ impl MappedMaterials {
             .run(|recorder| upload::image(recorder, &image.name, format, &[level], Access::FragmentSampled))
             .map_err(Failure::work)?;
         Ok(Some(Mapped {
-            layers: coarse.desc().layers,
+            look,
             bindings: [
                 Binding::sampled(5, own),
                 Binding::sampler(6, &sampler(texture.nearest)?),
@@ -108,25 +112,39 @@ impl MappedMaterials {
         }))
     }
 
+    /// What the room chooses for the material.
+    fn chosen(&mut self, device: &Device<'_>, map: &NormalMap, material: &Material) -> Outcome<Option<Kept>> {
+        let choice = normals::choose(map, brdf(material), TOLERANCE).map_err(Failure::work)?;
+        let mut settings = Settings::default();
+        if self.filter == Filter::Octahedral {
+            settings.storage = Storage::Octahedral8;
+        }
+        let mut look = None;
+        match choice.method {
+            Method::Harmonics(3) => {
+                self.left_out.extend(choice.left_out);
+                return harmonics(device, map);
+            }
+            Method::Lobes(lobes) => {
+                settings.fit.lobes = lobes;
+                self.left_out.extend(choice.left_out);
+            }
+            Method::Taps if self.filter == Filter::Lobes => look = Some(Look::Quarters),
+            // This draw has no more harmonics than nine, nor four bytes at four places: it keeps the default.
+            _ => {}
+        }
+        let lobes = self.lobes(device, map, settings)?;
+        Ok(lobes.map(|lobes| (look.unwrap_or(Look::Layers(lobes.desc().layers)), lobes)))
+    }
+
     /// The room's own texture, built in a frame before all others.
     fn lobes(
         &mut self,
         device: &Device<'_>,
         map: &NormalMap,
-        material: &Material,
+        settings: Settings,
     ) -> Outcome<Option<ImageView>> {
         let context = device.context();
-        let mut settings = Settings::default();
-        let brdf = match material.class {
-            MaterialClass::Lambert => Brdf::Lambert,
-            _ => Brdf::Ggx { alpha: f64::from(material.roughness * material.roughness).clamp(1e-3, 1.0) },
-        };
-        let choice = normals::choose(map, brdf, TOLERANCE).map_err(Failure::work)?;
-        // This draw reads lobes alone: where harmonics would do, it keeps the default.
-        if let Method::Lobes(lobes) = choice.method {
-            settings.fit.lobes = lobes;
-            self.left_out.extend(choice.left_out);
-        }
         let normals = Normals::new(context, settings).map_err(Failure::work)?;
         let mut build = normals.build(context, map).map_err(Failure::input)?;
         let (mut graph, mut imports) = (Graph::new(), Imports::new());
@@ -136,17 +154,35 @@ impl MappedMaterials {
         let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
         let mut execution = Execution::prepare(context, plan).map_err(Failure::work)?;
         device.frames(&mut execution, &imports, None, 1, |_| Ok(()))?;
-        array(&texture.image).map(Some)
+        whole(&texture.image).map(Some).map_err(Failure::work)
     }
 }
 
-/// All mips and layers of an image, as an array even of one layer.
-fn array(image: &airglow_gpu::Image) -> Outcome<ImageView> {
-    let desc = image.desc();
-    let dimension = vk::ImageViewType::TYPE_2D_ARRAY;
-    image
-        .view(ViewDesc { dimension, base_mip: 0, mips: desc.mips, base_layer: 0, layers: desc.layers })
-        .map_err(Failure::work)
+/// A texture from level 1 of a map on, and how it is looked up.
+type Kept = (Look, ImageView);
+
+/// Nine coefficients of the normals under each texel.
+fn harmonics(device: &Device<'_>, map: &NormalMap) -> Outcome<Option<Kept>> {
+    let run = device.bench();
+    let bench = Bench { context: device.context(), run: &run };
+    let image = bench.kept(map, Method::Harmonics(3), &Settings::default()).map_err(Failure::work)?;
+    image.map(|image| Ok((Look::Harmonics, whole(&image).map_err(Failure::work)?))).transpose()
+}
+
+/// The normals of a map's image, x and y of which are multiplied.
+pub fn normals(image: &Image, scale: f32) -> Outcome<NormalMap> {
+    let image = scaled(image, scale);
+    let vectors: Vec<[f32; 3]> = image.pixels.iter().map(|&texel| vector(texel)).collect();
+    NormalMap::from_vectors(image.width as usize, image.height as usize, &vectors)
+        .map_err(|error| Failure::input(format!("{}: {error}", image.name)))
+}
+
+/// What a material reflects by, as the choice of what is kept takes it.
+pub fn brdf(material: &Material) -> Brdf {
+    match material.class {
+        MaterialClass::Lambert => Brdf::Lambert,
+        _ => Brdf::Ggx { alpha: f64::from(material.roughness * material.roughness).clamp(1e-3, 1.0) },
+    }
 }
 
 /// The vector that a texel holds.
@@ -200,5 +236,5 @@ fn kept(device: &Device<'_>, map: &NormalMap, keep: fn(&[Sample]) -> Vec<[f32; 4
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let uploaded = device
         .run(|recorder| upload::array(recorder, "kept normals", format, &levels, Access::FragmentSampled));
-    array(&uploaded.map_err(Failure::work)?)
+    whole(&uploaded.map_err(Failure::work)?).map_err(Failure::work)
 }

@@ -9,6 +9,7 @@ use airglow_scene::{
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 
+use super::filter::Look;
 use super::{texture, upload};
 
 /// Everything that the draws of a scene read and that does not change from frame to frame.
@@ -48,8 +49,8 @@ pub struct Draw {
 #[derive(Clone)]
 #[cfg_attr(not(feature = "normals"), allow(dead_code, reason = "only the room of normal maps makes it"))]
 pub struct Mapped {
-    /// Array layers of what is kept of its coarser levels.
-    pub layers: u32,
+    /// How it is looked up.
+    pub look: Look,
     /// The map, what is kept of its coarser levels, and their samplers.
     pub bindings: [Binding; 4],
 }

@@ -1,7 +1,7 @@
 //! The demo host's own SPIR-V, as `cargo run -p xtask -- shaders` makes it.
 
 #[cfg(feature = "normals")]
-use super::filter::Filter;
+use super::filter::{Filter, Look};
 
 /// The words of a module in `shaders/spirv/host`, or in a room's folder.
 macro_rules! module {
@@ -28,17 +28,23 @@ pub fn mapped_vertex(relight: bool) -> Vec<u32> {
     }
 }
 
-/// The fragment stage of the forward draw of surfaces with normal maps, of so many layers.
+/// The fragment stage of the forward draw of surfaces with normal maps.
 #[cfg(feature = "normals")]
-pub fn mapped_fragment(filter: Filter, layers: u32) -> Vec<u32> {
-    match (filter, layers) {
-        (Filter::Lobes, 1) => module!("normals/", "scene.lobes.MAPPED_LAYERS1"),
-        (Filter::Lobes, 2) => module!("normals/", "scene.lobes.MAPPED_LAYERS2"),
-        (Filter::Lobes, 4) => module!("normals/", "scene.lobes.MAPPED_LAYERS4"),
+pub fn mapped_fragment(filter: Filter, look: Look) -> Vec<u32> {
+    match (filter, look) {
+        (_, Look::Harmonics) => module!("normals/", "scene.harmonics"),
+        (Filter::Lobes, Look::Quarters) => module!("normals/", "scene_parts"),
+        (Filter::Lobes, Look::Layers(1)) => module!("normals/", "scene.lobes.MAPPED_LAYERS1"),
+        (Filter::Lobes, Look::Layers(2)) => module!("normals/", "scene.lobes.MAPPED_LAYERS2"),
+        (Filter::Lobes, Look::Layers(4)) => module!("normals/", "scene.lobes.MAPPED_LAYERS4"),
         (Filter::Lobes, _) => module!("normals/", "scene.lobes.MAPPED_LAYERS6"),
+        (Filter::Octahedral, Look::Layers(1)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS1"),
+        (Filter::Octahedral, Look::Layers(2)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS2"),
+        (Filter::Octahedral, Look::Layers(6)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS6"),
+        (Filter::Octahedral, _) => module!("normals/", "scene_octahedral.MAPPED_LAYERS4"),
         (Filter::Toksvig, _) => module!("normals/", "scene.toksvig"),
         (Filter::Lean, _) => module!("normals/", "scene.lean"),
-        (Filter::Mip, _) => module!("normals/", "scene.mip"),
+        (Filter::Mip | Filter::Harmonics, _) => module!("normals/", "scene.mip"),
         (Filter::Texels, _) => module!("normals/", "scene.texels"),
     }
 }

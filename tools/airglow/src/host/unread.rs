@@ -37,7 +37,7 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
         (
             normal_textures,
             "normal textures",
-            "lights of the scene's own in clear air, and the room of normal maps",
+            "lights of the scene's own, and the room of normal maps",
         ),
         (still, "skins (drawn in their bind pose)", "a [[figure]] of their file"),
         (unplayed, "animations", "a [[figure]] of their file"),

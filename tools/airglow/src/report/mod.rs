@@ -9,6 +9,8 @@ pub mod labels;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod lines;
 pub mod model;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod normals;
 pub mod pareto;
 pub mod plot;
 pub mod ranking;
@@ -22,6 +24,6 @@ pub mod shadow;
 pub mod steadiness;
 pub mod sweep;
 pub mod table;
-#[cfg(all(any(feature = "fog", feature = "radiance"), feature = "relight"))]
+#[cfg(all(any(feature = "fog", feature = "normals", feature = "radiance"), feature = "relight"))]
 pub mod timed_plan;
 pub mod write;

@@ -6,6 +6,7 @@ mod explain;
 mod fog;
 mod instruments;
 mod moving;
+mod maps;
 mod roads;
 
 use std::path::{Path, PathBuf};
