@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use airglow::shadow::MAX_SPHERES;
 use airglow::shadow::spheres::{FitSettings, SphereSet};
 use airglow_scene::Mesh;
 use clap::Args;
@@ -13,6 +12,9 @@ use crate::files;
 use crate::host::sphere_mesh;
 use crate::host::spheres::{SphereFile, fitted};
 use crate::output::Output;
+
+/// Spheres that a fit makes at most.
+const MOST: usize = 1024;
 
 /// Fit spheres to the meshes of a file: as few as an error needs, or so many.
 ///
@@ -31,7 +33,7 @@ pub struct Arguments {
     #[arg(long, short = 'o', value_name = "FILE", required = true)]
     output: Vec<PathBuf>,
     /// Spheres of each mesh of the file.
-    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=MAX_SPHERES as i64))]
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=MOST as i64))]
     count: u32,
     /// As few spheres as leave no more than this share of the mesh's volume outside, what several share counted for each.
     #[arg(long, value_name = "SHARE", conflicts_with = "count")]
@@ -138,11 +140,11 @@ fn fewest(
         if share <= error {
             break found;
         }
-        if count == MAX_SPHERES {
-            let problem = format!("{MAX_SPHERES} spheres leave {share:.2} of its volume outside");
+        if count == MOST {
+            let problem = format!("{MOST} spheres leave {share:.2} of its volume outside");
             return Err(Failure::input(format!("{name}: {problem}; allow a larger --error")));
         }
-        (below, count) = (count, (2 * count).min(MAX_SPHERES));
+        (below, count) = (count, (2 * count).min(MOST));
     };
     while count - below > 1 {
         let middle = below.midpoint(count);
@@ -182,6 +184,6 @@ mod tests {
         };
         let found = |error| fewest("a mesh", error, fit).map(|(settings, _)| settings.spheres);
         assert_eq!((found(10.0).unwrap(), found(0.5).unwrap(), found(0.19).unwrap()), (1, 20, 53));
-        assert!(found(1e-3).unwrap_err().to_string().contains("larger --error"));
+        assert!(found(1e-4).unwrap_err().to_string().contains("larger --error"));
     }
 }
