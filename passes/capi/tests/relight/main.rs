@@ -48,3 +48,16 @@ fn a_host_in_cpp_lights_its_mesh_with_either_library() {
     assert!(flank > plain && plain > far_flank, "flank {flank}, plain {plain}, far flank {far_flank}");
     assert!(shadow + 20 < plain, "shadow {shadow}, plain {plain}");
 }
+
+#[cfg(feature = "shadow")]
+#[test]
+fn a_host_in_cpp_hands_the_shadow_of_a_ball_to_relighting() {
+    let [(name, libraries), _] = linked(&build("airglow-c"), "airglow");
+    let source = format!("{ROOM}/examples/shadow/host.cpp");
+    let program = host(source.as_ref(), &format!("shadow_{name}"), &libraries);
+    let picture = picture(&program, [SIDE; 2]);
+    let at = |x: usize, y: usize| u32::from(picture[3 * (y * SIDE + x)]);
+    // The ball hovers over (0.5, 0.5), and the sun is low over the left edge.
+    let (plain, below, behind) = (at(5, 5), at(96, 96), at(110, 96));
+    assert!(below + 20 < plain && behind + 5 < plain, "plain {plain}, below {below}, behind {behind}");
+}

@@ -2,7 +2,6 @@
 //! and state.
 
 use std::mem::zeroed;
-use std::ptr::null_mut;
 
 use airglow_conformance::{Declared, Given, HostDevice, HostResource, Refusal, Room, conform_on, copy_mips};
 use airglow_fog::{Asked, Background, Distant, Seen};
