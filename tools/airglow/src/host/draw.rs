@@ -14,7 +14,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(feature = "fog")]
 use super::complete::Complete;
-use super::filter::Look;
+use super::filter::{Look, MAPPED_BINDINGS};
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, MaterialConstants};
 use super::shaders;
@@ -334,18 +334,6 @@ pub const DRAW_BINDINGS: [BindingDesc; 5] = [
     BindingDesc::new(2, BindingKind::Sampler),
     BindingDesc::new(3, BindingKind::UniformBuffer),
     BindingDesc::new(4, BindingKind::StorageBuffer),
-];
-
-/// For a surface with a normal map: the map, what is kept of its coarser levels, and how each is sampled.
-const MAPPED_BINDINGS: [BindingDesc; 8] = [
-    BindingDesc::new(0, BindingKind::UniformBuffer),
-    BindingDesc::new(1, BindingKind::SampledImage),
-    BindingDesc::new(2, BindingKind::Sampler),
-    BindingDesc::new(3, BindingKind::UniformBuffer),
-    BindingDesc::new(5, BindingKind::SampledImage),
-    BindingDesc::new(6, BindingKind::Sampler),
-    BindingDesc::new(7, BindingKind::SampledImage),
-    BindingDesc::new(8, BindingKind::Sampler),
 ];
 
 /// What the vertex stage hands on of a surface.

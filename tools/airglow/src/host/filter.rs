@@ -1,5 +1,6 @@
 //! What stands for the normals of a normal map under a pixel.
 
+use airglow_gpu::{BindingDesc, BindingKind};
 use clap::ValueEnum;
 
 /// How normal maps are filtered.
@@ -32,3 +33,15 @@ pub enum Look {
     /// Coefficients of harmonics.
     Harmonics,
 }
+
+/// For a surface with a normal map: the map, what is kept of its coarser levels, and how each is sampled.
+pub const MAPPED_BINDINGS: [BindingDesc; 8] = [
+    BindingDesc::new(0, BindingKind::UniformBuffer),
+    BindingDesc::new(1, BindingKind::SampledImage),
+    BindingDesc::new(2, BindingKind::Sampler),
+    BindingDesc::new(3, BindingKind::UniformBuffer),
+    BindingDesc::new(5, BindingKind::SampledImage),
+    BindingDesc::new(6, BindingKind::Sampler),
+    BindingDesc::new(7, BindingKind::SampledImage),
+    BindingDesc::new(8, BindingKind::Sampler),
+];

@@ -29,7 +29,8 @@ pub fn times(measurement: &Measurement<'_>, map: &Map, brdf: Brdf) -> Outcome<Ve
         let kept = bench.kept(&map.normals, method, &settings).map_err(Failure::work)?;
         let kept =
             kept.ok_or_else(|| Failure::input(format!("{}: a single texel has no levels", map.name)))?;
-        let shading = Shading::new(device.context(), method, settings.storage, brdf).map_err(Failure::work)?;
+        let shading =
+            Shading::new(device.context(), method, settings.storage, brdf).map_err(Failure::work)?;
         plans.push(plan(measurement, method, &shading, &kept, &output)?);
         bytes.push(4 * u64::from(SIDE * SIDE) * (1 + 8 * method.numbers().div_ceil(4) as u64));
     }
