@@ -53,7 +53,8 @@ impl Picture<'_> {
         for _ in 0..cuts as u32 {
             parts = parts.into_iter().flat_map(cut).collect();
         }
-        let part = |(corners, places): ([DVec3; 3], [DVec2; 3])| Triangle { corners, radiance: self.mean(places) };
+        let part =
+            |(corners, places): ([DVec3; 3], [DVec2; 3])| Triangle { corners, radiance: self.mean(places) };
         Ok(parts.into_iter().map(part).collect())
     }
 

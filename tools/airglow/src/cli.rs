@@ -2,13 +2,13 @@
 
 use clap::{Args, Parser, Subcommand};
 
-#[cfg(all(feature = "relight", feature = "shadow"))]
-use crate::commands::{film, spheres};
 #[cfg(all(feature = "normals", feature = "relight"))]
 use crate::commands::maps;
 use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
 use crate::commands::{eval, explain, plan, render, report, show, stability};
+#[cfg(all(feature = "relight", feature = "shadow"))]
+use crate::commands::{film, spheres};
 
 const FIRST_STEPS: &str = "\
 First steps:

@@ -179,7 +179,8 @@ fn normals(scene: Scene, global: &Global, output: &Output) -> Outcome {
 #[cfg(feature = "shadow")]
 fn shadow(scene: &Scene, global: &Global, output: &Output) -> Outcome {
     use crate::report::shadow::{Effort, Measurement};
-    if let Some(left_out) = crate::host::shadow::left_out(scene) {
+    if !crate::host::shadow::is_drawn(scene) {
+        let left_out = crate::host::shadow::left_out(scene);
         return output.result(&left_out, left_out_text);
     }
     let explanation = device::with(global, &airglow::shadow::Shadow::requirements(), |device| {

@@ -9,8 +9,6 @@ pub mod eval;
 pub mod explain;
 #[cfg(all(feature = "relight", feature = "shadow"))]
 pub mod film;
-#[cfg(all(feature = "relight", feature = "shadow"))]
-pub mod spheres;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod maps;
 #[cfg(all(feature = "normals", feature = "relight"))]
@@ -25,6 +23,8 @@ pub mod requirements;
 pub mod scene;
 #[cfg(feature = "relight")]
 pub mod show;
+#[cfg(all(feature = "relight", feature = "shadow"))]
+pub mod spheres;
 #[cfg(feature = "relight")]
 pub mod stability;
 #[cfg(feature = "relight")]

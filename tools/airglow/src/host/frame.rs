@@ -233,13 +233,10 @@ fn shadow(
     match present {
         Some(pass) if settings.without_shadow => graph.leave_out(super::shadow::asked(pass.bytes())),
         Some(pass) => return pass.add(graph, imports, posed, settings.count_shadow),
-        None => {
-            let asked = |left_out: &airglow_graph::LeftOut| match settings.without_shadow {
-                true => super::shadow::asked(left_out.bytes),
-                false => left_out.clone(),
-            };
-            renderer.unshadowed.iter().map(asked).for_each(|left_out| graph.leave_out(left_out));
+        None if settings.without_shadow => {
+            graph.leave_out(super::shadow::asked(renderer.unshadowed.bytes));
         }
+        None => graph.leave_out(renderer.unshadowed.clone()),
     }
     super::shadow::Shadowed::default()
 }

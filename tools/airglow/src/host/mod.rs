@@ -8,13 +8,13 @@
 
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod airs;
+#[cfg(feature = "relight")]
+pub mod average;
+pub mod ball;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod complete;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
-#[cfg(feature = "relight")]
-pub mod average;
-pub mod ball;
 pub mod device;
 #[cfg(feature = "relight")]
 pub mod draw;

@@ -49,7 +49,7 @@ pub struct Renderer<'d> {
     pub(super) skins: Option<Skins>,
     /// Why no shadow of what moves is drawn.
     #[cfg(feature = "shadow")]
-    pub(super) unshadowed: Option<LeftOut>,
+    pub(super) unshadowed: LeftOut,
     pub(super) pipelines: Pipelines,
     /// The scene's lights, in its medium.
     pub(super) lights: Option<LightsConstants>,

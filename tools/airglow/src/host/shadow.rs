@@ -86,16 +86,15 @@ fn bytes(scene: &Scene) -> u64 {
     4 * u64::from(scene.quality.order).pow(2) * count
 }
 
-/// The record of the pass being left out of a scene; `None` where it has something to do.
-pub fn left_out(scene: &Scene) -> Option<LeftOut> {
-    if is_drawn(scene) {
-        return None;
-    }
-    let (why, would_return) = match blocks(scene) {
-        true => ("it has no tables for so many bands", "3 to 6 bands"),
-        false => ("nothing that moves blocks", "a [[figure]] or a [[blocker]] in the scene file"),
+/// The record of the pass being left out of a scene in which no light falls that it could take away, or which it has no
+/// part in.
+pub fn left_out(scene: &Scene) -> LeftOut {
+    let (why, would_return) = match (blocks(scene), is_drawn(scene)) {
+        (false, _) => ("nothing that moves blocks", "a [[figure]] or a [[blocker]] in the scene file"),
+        (true, false) => ("it has no tables for so many bands", "3 to 6 bands"),
+        (true, true) => ("nothing is relit that it could darken", "an environment or an [[emitter]]"),
     };
-    Some(record(why, would_return, bytes(scene)))
+    record(why, would_return, bytes(scene))
 }
 
 /// The record of the pass being left out by the host.

@@ -17,14 +17,9 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     let drawn = |_: &Material| false;
     let unread = |material: &&Material| material.normal_texture.is_some() && !drawn(material);
     let normal_textures = scene.materials.iter().filter(unread).count();
-    #[cfg(all(feature = "radiance", feature = "relight"))]
-    let emitters = if super::near::is_drawn(scene) { 0 } else { scene.emitters.len() };
-    #[cfg(not(all(feature = "radiance", feature = "relight")))]
-    let emitters = scene.emitters.len();
-    #[cfg(all(feature = "shadow", feature = "relight"))]
-    let blockers = if super::shadow::is_drawn(scene) { 0 } else { scene.blockers.len() };
-    #[cfg(not(all(feature = "shadow", feature = "relight")))]
-    let blockers = scene.blockers.len();
+    // A room that is there says itself why it has nothing to do.
+    let near = cfg!(all(feature = "radiance", feature = "relight"));
+    let moving = cfg!(all(feature = "shadow", feature = "relight"));
     let is_still = |(number, instance): &(usize, &Instance)| instance.skin.is_some() && !scene.moves(*number);
     let still = scene.instances.iter().enumerate().filter(is_still).count();
     let played = scene.figures.iter().filter(|figure| figure.animation.is_some()).count();
@@ -32,13 +27,9 @@ pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     let kinds = [
         (scene.lights.len().saturating_sub(MAX_LIGHTS), "further lights", "fewer lights: a draw takes 64"),
         (usize::from(scene.medium.is_some() && !cfg!(feature = "fog")), "media", "the room of the fog pass"),
-        (emitters, "near emitters", "the room of the radiance pass, and 3 to 6 bands"),
-        (blockers, "blockers", "the room of the shadow pass, and 3 to 6 bands"),
-        (
-            normal_textures,
-            "normal textures",
-            "lights of the scene's own, and the room of normal maps",
-        ),
+        (if near { 0 } else { scene.emitters.len() }, "near emitters", "the room of the radiance pass"),
+        (if moving { 0 } else { scene.blockers.len() }, "blockers", "the room of the shadow pass"),
+        (normal_textures, "normal textures", "lights of the scene's own, and the room of normal maps"),
         (still, "skins (drawn in their bind pose)", "a [[figure]] of their file"),
         (unplayed, "animations", "a [[figure]] of their file"),
     ];

@@ -13,9 +13,9 @@ pub mod model;
 pub mod normals;
 pub mod pareto;
 pub mod plot;
-pub mod ranking;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod radiance;
+pub mod ranking;
 #[cfg(feature = "relight")]
 pub mod relight;
 #[cfg(all(feature = "relight", feature = "shadow"))]

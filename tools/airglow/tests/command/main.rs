@@ -5,8 +5,9 @@
 mod explain;
 mod fog;
 mod instruments;
-mod moving;
+mod leaving_out;
 mod maps;
+mod moving;
 mod roads;
 
 use std::path::{Path, PathBuf};

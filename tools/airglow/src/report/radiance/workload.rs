@@ -129,7 +129,8 @@ fn in_the_world(scene: &Scene, transfer: &SceneTransfer) -> Outcome<(Vec<[f32; 3
     let Placed { mut positions, mut vectors, parts } = Placed::new(scene, transfer);
     let surfaces = &parts[..emitters::surfaces(scene)];
     let count = surfaces.last().map_or(0, |part| part.vertices.end as usize);
-    (positions.truncate(count), vectors.truncate(count * FULL));
+    positions.truncate(count);
+    vectors.truncate(count * FULL);
     for part in surfaces {
         let turn = part.turn.unwrap_or(DMat3::IDENTITY).transpose();
         if turn == DMat3::IDENTITY {
