@@ -14,9 +14,9 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(feature = "fog")]
 use super::complete::Complete;
-use super::filter::{Look, MAPPED_BINDINGS};
+use super::filter::MAPPED_BINDINGS;
 use super::lights::LightsConstants;
-use super::scene::{DeviceScene, Draw, MaterialConstants};
+use super::scene::{DeviceScene, Draw, Look, MaterialConstants};
 use super::shaders;
 use super::skin::Posed;
 use super::sky::{Behind, SkyPipelines};

@@ -23,17 +23,6 @@ pub enum Filter {
     Texels,
 }
 
-/// How what is kept of a map is looked up and shaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Look {
-    /// So many array layers, once.
-    Layers(u32),
-    /// Four layers, at the quarters of a pixel's footprint, each shaded by itself.
-    Quarters,
-    /// Coefficients of harmonics.
-    Harmonics,
-}
-
 /// For a surface with a normal map: the map, what is kept of its coarser levels, and how each is sampled.
 pub const MAPPED_BINDINGS: [BindingDesc; 8] = [
     BindingDesc::new(0, BindingKind::UniformBuffer),

@@ -11,8 +11,8 @@ use airglow_graph::{Access, Graph, LeftOut};
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
 use super::device::Device;
-use super::filter::{Filter, Look};
-use super::scene::{DeviceScene, Mapped};
+use super::filter::Filter;
+use super::scene::{DeviceScene, Look, Mapped};
 use super::{scene, shaders, upload};
 use crate::failure::{Failure, Outcome};
 

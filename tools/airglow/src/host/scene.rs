@@ -9,7 +9,6 @@ use airglow_scene::{
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 
-use super::filter::Look;
 use super::{texture, upload};
 
 /// Everything that the draws of a scene read and that does not change from frame to frame.
@@ -43,6 +42,18 @@ pub struct Draw {
     pub material: MaterialConstants,
     /// The normal map, where there is one to be drawn.
     pub mapped: Option<Mapped>,
+}
+
+/// How what is kept of a map is looked up and shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(not(feature = "normals"), allow(dead_code, reason = "only the room of normal maps makes it"))]
+pub enum Look {
+    /// So many array layers, once.
+    Layers(u32),
+    /// Four layers, at the quarters of a pixel's footprint, each shaded by itself.
+    Quarters,
+    /// Coefficients of harmonics.
+    Harmonics,
 }
 
 /// A material's normal map on the device.

@@ -1,7 +1,9 @@
 //! The demo host's own SPIR-V, as `cargo run -p xtask -- shaders` makes it.
 
 #[cfg(feature = "normals")]
-use super::filter::{Filter, Look};
+use super::filter::Filter;
+#[cfg(feature = "normals")]
+use super::scene::Look;
 
 /// The words of a module in `shaders/spirv/host`, or in a room's folder.
 macro_rules! module {

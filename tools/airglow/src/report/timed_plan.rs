@@ -37,6 +37,7 @@ impl TimedPlan {
     }
 
     /// Its work is this part of the others'; its milliseconds are given for the whole.
+    #[cfg(feature = "fog")]
     pub fn of_part(self, part: f64) -> Self {
         Self { scale: 1.0 / part, ..self }
     }

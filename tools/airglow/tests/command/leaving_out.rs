@@ -18,6 +18,9 @@ use serde_json::Value;
 
 use super::root;
 
+/// Parts of a scene file.
+type Parts = &'static [&'static str];
+
 const ENVIRONMENT: &str = "[environment]\nfile = 'ENV/courtyard_512.exr'\n";
 const FAR: &str = "[environment]\nfile = 'ENV/courtyard_512.exr'\ndistance = 40\n";
 const MEDIUM: &str = "[medium]\nextinction = 0.05\nalbedo = 0.9\n";
@@ -27,7 +30,7 @@ const DARK: &str = "[[emitter]]\ncenter = [0, 1, -1]\nsize = [0.2, 0.2, 0.2]\nra
 const BLOCKER: &str = "[[blocker]]\ncenter = [0.3, 1, 0.2]\nradius = 0.4\n";
 
 /// Combinations: the mesh, which with `grooves` has a normal map, a sun and a lamp, and what else there is.
-const SCENES: [(&str, &str, &[&str]); 13] = [
+const SCENES: [(&str, &str, Parts); 13] = [
     ("nothing but a mesh", "ground", &[]),
     ("an environment", "ground", &[ENVIRONMENT]),
     ("a medium without light", "ground", &[MEDIUM]),
@@ -44,7 +47,7 @@ const SCENES: [(&str, &str, &[&str]); 13] = [
 ];
 
 /// A scene with something that does nothing, by itself or by what the command is told, and the scene without it.
-const IDLE: [(&str, &[&str], &[&str], &[&str]); 3] = [
+const IDLE: [(&str, Parts, Parts, Parts); 3] = [
     ("a blocker where nothing is relit", &[BLOCKER], &[], &[]),
     ("a medium left out", &[ENVIRONMENT, MEDIUM], &["--without", "fog"], &[ENVIRONMENT]),
     ("a shadow left out", &[ENVIRONMENT, BLOCKER], &["--without", "shadow"], &[ENVIRONMENT]),

@@ -1,5 +1,6 @@
 //! The command as its users see it.
 
+#![cfg(feature = "relight")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
 mod explain;
