@@ -51,7 +51,7 @@ pub fn make(workspace: &Path, name: &str) -> Result<(), Error> {
     run(workspace, "cargo", &["update", "--quiet", "--workspace", "--offline"])?;
     run(workspace, "cargo", &["fmt", "-p", &format!("airglow-{name}"), "-p", "airglow"])?;
     shaders::run(&workspace.join("shaders/glsl"), &workspace.join("shaders/spirv"), Some(name), false)?;
-    portability::run(workspace, false)?;
+    portability::run_room(workspace, name)?;
     println!("passes/{name} and shaders/glsl/{name} are made; next: cargo test -p airglow-{name}");
     Ok(())
 }
@@ -83,7 +83,7 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
     room_lines::write(&edited)?;
     run(workspace, "cargo", &["update", "--quiet", "--workspace", "--offline"])?;
     header::run(workspace, false)?;
-    portability::run(workspace, false)
+    portability::run_room(workspace, name)
 }
 
 /// Refuses a name that cannot be, or already is, a room's.
