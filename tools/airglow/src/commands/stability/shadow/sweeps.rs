@@ -38,8 +38,7 @@ fn limits() -> Vec<Limit> {
         Limit {
             name: "spheres gather in one place",
             parameter: "number of spheres of 20 degrees",
-            // From about twenty on the logarithms add up to more than there is, and the pass clamps.
-            values: [1, 2, 4, 6, 8, 12, 16].map(f64::from).to_vec(),
+            values: [1, 2, 4, 6, 8, 12, 16, 24].map(f64::from).to_vec(),
             sky: |count| {
                 let radius = 20.0_f64.to_radians().sin();
                 vec![Sphere { center: DVec3::Z, radius }; count as usize]
