@@ -111,6 +111,12 @@ pub enum MathError {
         /// Its estimated absolute error.
         error: f64,
     },
+    /// A name that no preset has.
+    #[error("there is no preset \"{name}\": give low, medium, high or reference")]
+    Preset {
+        /// The name that was given.
+        name: String,
+    },
     /// A statistic of no samples.
     #[error("{what} needs at least one sample: give some")]
     NoSamples {

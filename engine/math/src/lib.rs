@@ -22,6 +22,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod preset;
 pub mod quadrature;
 pub mod sequence;
 pub mod sh;
@@ -33,4 +34,5 @@ mod testing;
 pub mod world;
 
 pub use error::MathError;
+pub use preset::Preset;
 pub use world::World;

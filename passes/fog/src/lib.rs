@@ -55,6 +55,7 @@ mod light;
 mod lobes;
 mod medium;
 mod pack;
+mod preset;
 mod reach;
 pub mod reference;
 pub mod rivals;

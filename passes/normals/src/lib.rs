@@ -44,6 +44,7 @@ mod method;
 mod mixture;
 mod normals;
 pub mod octahedral;
+mod preset;
 pub mod reference;
 pub mod rivals;
 mod settings;

@@ -45,6 +45,7 @@ mod oracle;
 mod part;
 mod pass_settings;
 mod picture;
+mod preset;
 mod radiance;
 mod receiver;
 mod reconstruct;

@@ -48,6 +48,7 @@ pub mod kernels;
 mod mesh;
 pub mod pack;
 mod prepare;
+mod preset;
 mod record;
 pub mod reference;
 mod relight;

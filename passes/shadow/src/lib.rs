@@ -38,6 +38,7 @@ mod logarithm;
 mod order;
 mod pixels;
 mod polynomial;
+mod preset;
 pub mod reference;
 mod settings;
 mod shadow;
