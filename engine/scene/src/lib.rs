@@ -38,6 +38,7 @@ pub mod limits;
 mod material;
 mod mesh;
 mod pose;
+mod presets;
 mod scene;
 mod scene_file;
 mod settings;
@@ -56,6 +57,7 @@ pub use image::{Encoding, FloatImage, Image, luminance, srgb_decode, srgb_encode
 pub use light::{Blocker, Emitter, EmitterShape, Light, LightKind, Medium, VISIBILITY_CONTRAST};
 pub use material::{AlphaMode, IDENTITY_UV, LAMBERT_ROUGHNESS, Material, MaterialClass, Texture, Wrap};
 pub use mesh::{ContentHash, Mesh};
+pub use presets::{LIGHT_TRANSPORT, Presets};
 pub use scene::{Instance, Scene};
 pub use settings::{Exposure, Quality, Shadow, Storage};
 pub use warning::Warning;

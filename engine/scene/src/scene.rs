@@ -11,6 +11,7 @@ use crate::light::{Blocker, Emitter, Light, Medium};
 use crate::limits::MAX_COORDINATE;
 use crate::material::Material;
 use crate::mesh::Mesh;
+use crate::presets::Presets;
 use crate::settings::{Exposure, Quality};
 use crate::warning::Warning;
 
@@ -52,6 +53,8 @@ pub struct Scene {
     pub exposure: Exposure,
     /// What the light transport is computed with.
     pub quality: Quality,
+    /// How exactly each room is to work.
+    pub presets: Presets,
     /// What was left out or mended.
     pub warnings: Vec<Warning>,
 }

@@ -63,7 +63,8 @@ fn build(mut builder: Builder<'_>, text: &str, parsed: SceneFile) -> Result<Scen
         chosen_camera: camera,
         medium: parsed.medium.map(|table| table.0),
         exposure: parsed.exposure.0,
-        quality: parsed.quality.0,
+        quality: parsed.quality.quality,
+        presets: parsed.quality.presets,
         ..builder.scene
     };
     let emitters = parsed.emitter.into_iter().enumerate();

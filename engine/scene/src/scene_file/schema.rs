@@ -1,7 +1,9 @@
 //! The tables of a scene file, as this crate's README describes them.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use airglow_math::{MathError, Preset};
 use glam::{Mat4, Vec3};
 use serde::Deserialize;
 use toml::Spanned;
@@ -14,6 +16,7 @@ use super::values::{
 use crate::exposure::scale_of_ev;
 use crate::light::{Blocker, Emitter, EmitterShape, Medium};
 use crate::material::{Material, MaterialClass};
+use crate::presets::{LIGHT_TRANSPORT, Presets};
 use crate::settings::{Exposure, Quality, Shadow, Storage};
 
 /// The whole file.
@@ -285,22 +288,43 @@ impl TryFrom<ExposureFields> for ExposureTable {
 /// `[quality]`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(try_from = "QualityFields")]
-pub(super) struct QualityTable(pub(super) Quality);
+pub(super) struct QualityTable {
+    pub(super) quality: Quality,
+    pub(super) presets: Presets,
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct QualityFields {
+    preset: Option<PresetName>,
+    #[serde(default)]
+    presets: BTreeMap<String, PresetName>,
     order: Option<u32>,
     rays: Option<u32>,
     storage: Option<Storage>,
     shadow: Option<Shadow>,
 }
 
+/// A preset by its name.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "String")]
+struct PresetName(Preset);
+
+impl TryFrom<String> for PresetName {
+    type Error = MathError;
+
+    fn try_from(name: String) -> Result<Self, MathError> {
+        name.parse().map(Self)
+    }
+}
+
 impl TryFrom<QualityFields> for QualityTable {
     type Error = &'static str;
 
     fn try_from(fields: QualityFields) -> Result<Self, Self::Error> {
-        let default = Quality::default();
+        let rooms = fields.presets.into_iter().map(|(room, PresetName(preset))| (room, preset)).collect();
+        let presets = Presets { all: fields.preset.map(|PresetName(preset)| preset), rooms };
+        let default = presets.of(LIGHT_TRANSPORT).map_or_else(Quality::default, Quality::from);
         let order = fields.order.unwrap_or(default.order);
         let rays = fields.rays.unwrap_or(default.rays);
         if !(1..=6).contains(&order) {
@@ -311,6 +335,6 @@ impl TryFrom<QualityFields> for QualityTable {
         }
         let storage = fields.storage.unwrap_or(default.storage);
         let shadow = fields.shadow.unwrap_or(default.shadow);
-        Ok(Self(Quality { order, rays, storage, shadow }))
+        Ok(Self { quality: Quality { order, rays, storage, shadow }, presets })
     }
 }

@@ -1,6 +1,7 @@
 //! Scene files: what the README promises, line by line.
 
 use crate::support::{full_model, put};
+use airglow_math::Preset;
 use airglow_scene::{
     EmitterShape, Exposure, FloatImage, LightKind, Quality, Scene, SceneError, Shadow, Storage, image_io,
     load,
@@ -114,6 +115,19 @@ fn every_table_arrives() {
 }
 
 #[test]
+fn a_preset_says_what_the_file_does_not() {
+    let quality = |text: &str| {
+        let scene = load_text(&folder(), &format!("[quality]\n{text}")).unwrap();
+        (scene.quality, scene.presets)
+    };
+    let (found, presets) = quality("preset = 'low'\nrays = 7\npresets.fog = 'high'");
+    assert_eq!(found, Quality { rays: 7, ..Preset::Low.into() });
+    assert_eq!([presets.of("shadow"), presets.of("fog")], [Some(Preset::Low), Some(Preset::High)]);
+    let (found, presets) = quality("presets.relight = 'reference'");
+    assert_eq!((found, presets.of("fog")), (Preset::Reference.into(), None));
+}
+
+#[test]
 fn a_missing_table_is_its_default() {
     let scene = load_text(&folder(), "[[gltf]]\nfile = 'model.glb'\n[camera]\nname = 'camera 0'").unwrap();
     assert_eq!(scene.exposure, Exposure::Automatic { key: 0.18 });
@@ -131,6 +145,7 @@ fn faults_carry_line_and_column() {
         ("\n[qualty]\norder = 4", 2, "unknown field `qualty`"),
         ("[quality]\norder = 7", 1, "order is a whole number from 1 to 6"),
         ("[quality]\nstorage = 'f64'", 2, "unknown variant `f64`"),
+        ("[quality]\npreset = 'ultra'", 2, "no preset \"ultra\": give low"),
         ("[medium]\nextinction = 1\nvisibility = 3", 1, "either extinction (1/m) or visibility (m)"),
         ("[environment]\nfile = 'sky.exr'\ndistance = -1.0", 3, "-1 found, a number not below 0"),
         ("[medium]\nvisibility = -3.0", 2, "-3 found, a positive number expected"),

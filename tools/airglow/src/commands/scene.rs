@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use airglow_scene::{Quality, Scene, Shadow, Storage};
+use airglow_math::Preset;
+use airglow_scene::{LIGHT_TRANSPORT, Presets, Quality, Scene, Shadow, Storage};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, Outcome};
@@ -24,6 +25,10 @@ pub struct SceneOptions {
     /// Light the scene by this equirectangular map (.exr, .hdr) instead of the scene file's.
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
+    /// How exactly the passes work, instead of the scene file's: low, medium, high or reference; or one of them for one
+    /// pass, as in fog=high. May be given several times.
+    #[arg(long, value_name = "[PASS=]NAME", value_parser = preset)]
+    pub preset: Vec<PresetOption>,
     /// Bands of spherical harmonics, 1 to 6, instead of the scene file's.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=6))]
     pub order: Option<u32>,
@@ -64,12 +69,58 @@ pub enum ShadowName {
     Unshadowed,
 }
 
+/// `--preset`: for all passes, or for one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PresetOption {
+    room: Option<&'static str>,
+    preset: Preset,
+}
+
+/// The rooms that presets speak of, by name.
+pub const ROOMS: [&str; 5] = ["relight", "fog", "radiance", "normals", "shadow"];
+
+/// Reads `--preset`.
+fn preset(text: &str) -> Result<PresetOption, String> {
+    let (room, name) = match text.split_once('=') {
+        Some((room, name)) => (Some(room), name),
+        None => (None, text),
+    };
+    let known = |room| ROOMS.into_iter().find(|known| *known == room);
+    let room = match room {
+        Some(room) => {
+            Some(known(room).ok_or_else(|| format!("there is no pass `{room}`; give {}", ROOMS.join(", ")))?)
+        }
+        None => None,
+    };
+    Ok(PresetOption { room, preset: name.parse().map_err(|error| format!("{error}"))? })
+}
+
+/// Applies what the command line says of presets, which goes before what the scene file says of anything.
+fn ask(scene: &mut Scene, asked: &[PresetOption]) {
+    let Presets { all, rooms } = &mut scene.presets;
+    for option in asked {
+        match option.room {
+            Some(room) => {
+                rooms.insert(room.to_owned(), option.preset);
+            }
+            None => {
+                rooms.clear();
+                *all = Some(option.preset);
+            }
+        }
+        if option.room.is_none_or(|room| room == LIGHT_TRANSPORT) {
+            scene.quality = Quality { shadow: scene.quality.shadow, ..option.preset.into() };
+        }
+    }
+}
+
 impl SceneOptions {
     /// A scene as its file says, lit by another environment if one is named.
     pub fn plain(scene: &Path, environment: Option<&Path>) -> Self {
         Self {
             scene: scene.to_owned(),
             environment: environment.map(Path::to_owned),
+            preset: Vec::new(),
             order: None,
             rays: None,
             storage: None,
@@ -108,6 +159,10 @@ impl SceneOptions {
                  in [environment] of the scene file",
             );
         }
+        if let Some(unknown) = scene.presets.rooms.keys().find(|room| !ROOMS.contains(&room.as_str())) {
+            output.warn(format!("[quality.presets] of the scene file: there is no pass {unknown:?}"));
+        }
+        ask(&mut scene, &self.preset);
         let quality = &mut scene.quality;
         *quality = Quality {
             order: self.order.unwrap_or(quality.order),

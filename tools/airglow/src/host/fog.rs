@@ -46,7 +46,8 @@ pub fn requirements(scene: &Scene) -> Requirements {
 
 /// The settings of the pass for a scene.
 fn settings(scene: &Scene, format: vk::Format) -> fog::Settings {
-    fog::Settings { format, environment: scene.environment.is_some(), ..fog::Settings::default() }
+    let asked = scene.presets.of("fog").map_or_else(fog::Settings::default, fog::Settings::from);
+    fog::Settings { format, environment: scene.environment.is_some(), ..asked }
 }
 
 impl SceneFog {
@@ -69,8 +70,9 @@ impl SceneFog {
         let lights: Vec<fog::Light> = scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect();
         let reflecting = scene.materials.iter().filter(|_| !lights.is_empty());
         let lobes: Vec<Lobe> = reflecting.flat_map(lobes).flatten().collect();
-        let lobes = LobeTables::new(context, fog::Preset::Default, &lobes).map_err(Failure::work)?;
-        let pass = Fog::new(context, settings(scene, hdr)).map_err(Failure::work)?;
+        let settings = settings(scene, hdr);
+        let lobes = LobeTables::new(context, settings.preset, &lobes).map_err(Failure::work)?;
+        let pass = Fog::new(context, settings).map_err(Failure::work)?;
         let sky =
             uploaded.map(|uploaded| FoggedSky::new(device, scene, uploaded, &medium)).transpose()?.flatten();
         Ok(Some(Self { pass, lobes, sky, health: None, medium, lights }))

@@ -8,6 +8,7 @@ use airglow::normals::{self, Bench, Brdf, Method, NormalMap, Normals, Sample, Se
 use airglow_gpu::ash::vk;
 use airglow_gpu::{Binding, Execution, ImageView, Imports, Requirements, SamplerDesc};
 use airglow_graph::{Access, Graph, LeftOut};
+use airglow_math::Preset;
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
 use super::device::Device;
@@ -23,6 +24,8 @@ const TOLERANCE: f64 = 0.05;
 pub struct MappedMaterials {
     /// What stands for the normals under a pixel.
     pub filter: Filter,
+    /// What the scene asks of the room; without it each map gets what its material needs.
+    preset: Option<Preset>,
     /// What was left out, as plans say it.
     pub left_out: Vec<LeftOut>,
     materials: Vec<Option<Mapped>>,
@@ -45,7 +48,8 @@ pub fn requirements(scene: &Scene) -> Requirements {
 impl MappedMaterials {
     /// Filters the maps of a scene.
     pub fn new(device: &Device<'_>, scene: &Scene, filter: Filter) -> Outcome<Self> {
-        let mut maps = Self { filter, left_out: Vec::new(), materials: Vec::new() };
+        let preset = scene.presets.of("normals");
+        let mut maps = Self { filter, preset, left_out: Vec::new(), materials: Vec::new() };
         for material in &scene.materials {
             let mapped = match is_drawn(scene, material) {
                 true => maps.read(device, scene, material)?,
@@ -112,14 +116,13 @@ impl MappedMaterials {
         }))
     }
 
-    /// What the room chooses for the material.
+    /// What a preset says, else what the room chooses for the material.
     fn chosen(&mut self, device: &Device<'_>, map: &NormalMap, material: &Material) -> Outcome<Option<Kept>> {
-        let choice = normals::choose(map, brdf(material), TOLERANCE).map_err(Failure::work)?;
-        let mut settings = Settings::default();
-        if self.filter == Filter::Octahedral {
-            settings.storage = Storage::Octahedral8;
+        if let Some(preset) = self.preset {
+            return self.asked(device, map, preset.into());
         }
-        let mut look = None;
+        let choice = normals::choose(map, brdf(material), TOLERANCE).map_err(Failure::work)?;
+        let (mut settings, mut look) = (Settings::default(), None);
         match choice.method {
             Method::Harmonics(3) => {
                 self.left_out.extend(choice.left_out);
@@ -133,8 +136,22 @@ impl MappedMaterials {
             // This draw has no more harmonics than nine, nor four bytes at four places: it keeps the default.
             _ => {}
         }
+        let lobes = self.asked(device, map, settings)?;
+        Ok(lobes.map(|(layers, lobes)| (look.unwrap_or(layers), lobes)))
+    }
+
+    /// Lobes by these settings, as the filter stores them.
+    fn asked(
+        &mut self,
+        device: &Device<'_>,
+        map: &NormalMap,
+        mut settings: Settings,
+    ) -> Outcome<Option<Kept>> {
+        if self.filter == Filter::Octahedral {
+            settings.storage = Storage::Octahedral8;
+        }
         let lobes = self.lobes(device, map, settings)?;
-        Ok(lobes.map(|lobes| (look.unwrap_or(Look::Layers(lobes.desc().layers)), lobes)))
+        Ok(lobes.map(|lobes| (Look::Layers(lobes.desc().layers), lobes)))
     }
 
     /// The room's own texture, built in a frame before all others.

@@ -23,7 +23,7 @@ use super::transfer::SceneTransfer;
 use crate::failure::{Failure, Outcome};
 use crate::measure::near::NearStat;
 
-/// Error of a vertex colour that samples aim at, W/sr/m2 before exposure.
+/// Error of a vertex colour that samples aim at where no preset is asked for, W/sr/m2 before exposure.
 pub const BOUND: f64 = 2e-3;
 
 /// Bands that samples can have.
@@ -38,7 +38,7 @@ pub struct NearLight {
     spheres: Vec<Sphere>,
     /// The environment about the world's axes where it is not turned.
     distant: Vec<[f64; 3]>,
-    order: usize,
+    settings: PassSettings,
 }
 
 /// How the environment reaches the vertices of a frame.
@@ -103,8 +103,12 @@ pub fn measured_requirements() -> Requirements {
 }
 
 fn settings(scene: &Scene) -> PassSettings {
-    let refinement = Settings { bound: BOUND, ..Settings::default() };
-    PassSettings { order: scene.quality.order as usize, refinement, ..PassSettings::default() }
+    let unasked = || {
+        let refinement = Settings { bound: BOUND, ..Settings::default() };
+        PassSettings { refinement, ..PassSettings::default() }
+    };
+    let asked = scene.presets.of("radiance").map_or_else(unasked, PassSettings::from);
+    PassSettings { order: scene.quality.order as usize, ..asked }
 }
 
 impl Placed {
@@ -162,7 +166,7 @@ impl NearLight {
             triangles,
             spheres,
             distant,
-            order: settings.order,
+            settings,
         }))
     }
 
@@ -199,14 +203,14 @@ impl NearLight {
         let samples = self.receiver.samples();
         let states: Vec<RefineState> = bench.read(&samples.state).map_err(Failure::work)?;
         let lights: Vec<[f32; 4]> = bench.read(&samples.lights).map_err(Failure::work)?;
-        Ok(NearStat::new(states.first(), &lights, self.receiver.shape(), BOUND))
+        Ok(NearStat::new(states.first(), &lights, self.receiver.shape(), self.settings.refinement.bound))
     }
 
     fn arriving(&self, Arrival { turn, filter }: Arrival<'_>) -> Outcome<Vec<[f32; 3]>> {
         if self.distant.is_empty() {
             return Ok(Vec::new());
         }
-        let rotation = Rotation::from_quaternion(self.order, turn).map_err(Failure::work)?;
+        let rotation = Rotation::from_quaternion(self.settings.order, turn).map_err(Failure::work)?;
         let turned = rotation.apply_rgb(&self.distant).map_err(Failure::work)?;
         Ok(filtered(&turned, filter))
     }

@@ -114,7 +114,8 @@ impl SceneShadow {
             return Ok(None);
         }
         let order = scene.quality.order as usize;
-        let settings = shadow::Settings { order, normals: true, ..shadow::Settings::default() };
+        let asked = scene.presets.of("shadow").map_or_else(shadow::Settings::default, shadow::Settings::from);
+        let settings = shadow::Settings { order, normals: true, ..asked };
         let pass = Shadow::new(device.context(), settings).map_err(Failure::work)?;
         let mut instances = Vec::with_capacity(scene.instances.len());
         for (number, lit) in transfer.instances.iter().enumerate() {
