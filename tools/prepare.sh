@@ -1,5 +1,8 @@
 # Functions that the scripts beside this file share; sourced, not run.
 
+# Where cargo puts what it builds, whatever folder it is called from later.
+build_folder=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+
 say() { printf '\n== %s\n' "$*"; }
 
 fail() {
@@ -37,6 +40,14 @@ require_toolchain() {
     command -v cargo > /dev/null || PATH="$HOME/.cargo/bin:$PATH" # where rustup puts it
     command -v cargo > /dev/null || fail "cargo is not on the PATH; install a Rust toolchain with rustup"
     command -v cc > /dev/null || install_packages gcc libc6-dev
+}
+
+# Cargo for what only reads code (clippy, check, doc), with a command and its arguments: in a target folder of its own, so
+# that it goes on beside what builds, and without the C++ of the shader compiler, as nothing is linked there.
+check_cargo() {
+    local host
+    host=$(rustc --version --verbose | sed -n 's/^host: //p')
+    cargo --config "target.$host.glslang.rustc-link-lib = ['glslang']" "$1" --target-dir "$build_folder/checks" "${@:2}"
 }
 
 # Vulkan drivers of this machine whose file name matches; none is not an error.

@@ -11,11 +11,12 @@ require_toolchain
 use_lavapipe
 tree=$PWD
 copy=$tree/target/rooms
-export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$tree/target}
+export CARGO_TARGET_DIR=$build_folder
 
-# Built in the tree, with the features of the whole workspace as tools/test.sh does; it works on the folder it runs in.
-cargo build --locked --quiet --workspace --bin xtask
-xtask=$CARGO_TARGET_DIR/debug/xtask
+# Built in the tree, with the features of the whole workspace as tools/test.sh does, which names the one it has; it works
+# on the folder it runs in.
+[ -n "${XTASK:-}" ] || cargo build --locked --quiet --workspace --bin xtask
+xtask=${XTASK:-$build_folder/debug/xtask}
 
 # A copy of the working tree without what git ignores. Its crates have a version of their own, so that in the shared
 # target folder they stand beside those of the tree, and only what comes from registries is shared. Warnings are errors.
@@ -55,20 +56,20 @@ step() {
 
 without() {
     "$xtask" room "$1" --remove > /dev/null
-    cargo check --locked --quiet --workspace --all-targets
+    check_cargo check --locked --quiet --workspace --all-targets
     restore "$1"
 }
 
 alone() {
-    cargo check --locked --quiet --package airglow "${many[@]}" --all-targets --no-default-features --features "$1"
+    check_cargo check --locked --quiet --package airglow "${many[@]}" --all-targets --no-default-features --features "$1"
 }
 
 from_template() {
     local packages=(--package airglow-sample --package airglow)
     "$xtask" room sample > /dev/null
     cargo fmt "${packages[@]}" -- --check
-    cargo clippy --locked --quiet "${packages[@]}" "${many[@]}" --all-targets -- -D warnings
-    RUSTDOCFLAGS="-D warnings" cargo doc --locked --quiet "${packages[@]}" "${many[@]}" --lib --no-deps
+    check_cargo clippy --locked --quiet "${packages[@]}" "${many[@]}" --all-targets -- -D warnings
+    RUSTDOCFLAGS="-D warnings" check_cargo doc --locked --quiet "${packages[@]}" "${many[@]}" --lib --no-deps
     # Not optimised: here it is building that takes time.
     CARGO_PROFILE_DEV_OPT_LEVEL=0 cargo test --locked --quiet --package airglow-sample "${many[@]}" --lib --test plan --test gpu
 }

@@ -16,7 +16,7 @@ use_lavapipe
 # On a machine that builds once, what is kept for the next build, and the lines of a backtrace, only cost time.
 [ -z "${CI:-}" ] || export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=false
 
-logs=${CARGO_TARGET_DIR:-target}/checks
+logs=$build_folder/checks
 mkdir -p "$logs"
 summary=()
 failures=0
@@ -31,7 +31,8 @@ step() {
     "$@" || result=FAILED
     record "$name" $result $((SECONDS - start))
 }
-# Starts a step beside those that follow, which leave a core idle; what it says is kept until it is joined.
+# Starts a step beside those that follow, which leave a core idle; what it says is kept until it is joined. Its seconds
+# hold those in which it waits for another step that has its target folder.
 beside() {
     local name=$1 start=$SECONDS result=ok
     shift
@@ -42,27 +43,30 @@ beside() {
     } &
 }
 join() {
-    local result
+    local name result
     wait
-    read -r -a result < "$logs/$1.result"
-    say "$1, as it went beside"
-    cat "$logs/$1.log"
-    record "$1" "${result[@]}"
+    for name in "$@"; do
+        read -r -a result < "$logs/$name.result"
+        say "$name, as it went beside"
+        cat "$logs/$name.log"
+        record "$name" "${result[@]}"
+    done
 }
 
 step formatting cargo fmt --all --check
-# With the features of the whole workspace, so that its dependencies are those of the steps below.
-step xtask cargo build --locked --workspace --bin xtask
-step clippy cargo clippy --locked --workspace --all-targets -- -D warnings
+beside clippy check_cargo clippy --locked --workspace --all-targets -- -D warnings
 # The libraries for hosts in C hold nothing but what airglow-capi exports, and one shares its name with the umbrella.
-beside documentation env RUSTDOCFLAGS="-D warnings" \
-    cargo doc --locked --workspace --exclude airglow-c --exclude airglow-conform --lib --no-deps
-step shaders "${CARGO_TARGET_DIR:-target}/debug/xtask" shaders --check
-step header "${CARGO_TARGET_DIR:-target}/debug/xtask" header --check
-step portability "${CARGO_TARGET_DIR:-target}/debug/xtask" portability --check
-join documentation
-step programs cargo test --locked --workspace --no-run --quiet
+RUSTDOCFLAGS="-D warnings" beside documentation \
+    check_cargo doc --locked --workspace --exclude airglow-c --exclude airglow-conform --lib --no-deps
+# With the features of the whole workspace, so that its dependencies are those of the programs below.
+step xtask cargo build --locked --workspace --bin xtask
+export XTASK=$build_folder/debug/xtask
+step shaders "$XTASK" shaders --check
+step header "$XTASK" header --check
+step portability "$XTASK" portability --check
+join clippy documentation
 beside rooms tools/rooms.sh
+step programs cargo test --locked --workspace --no-run --quiet
 step tests cargo test --locked --workspace --no-fail-fast
 join rooms
 
