@@ -66,8 +66,10 @@ step header "$XTASK" header --check
 step portability "$XTASK" portability --check
 join clippy documentation
 beside rooms tools/rooms.sh
-step programs cargo test --locked --workspace --no-run --quiet
-step tests cargo test --locked --workspace --no-fail-fast
+# Clippy has checked the examples, which are programs to measure with; no test runs them.
+step programs cargo test --locked --workspace --tests --no-run --quiet
+step tests cargo test --locked --workspace --tests --no-fail-fast
+step doctests cargo test --locked --workspace --doc --no-fail-fast
 join rooms
 
 say "summary"
