@@ -154,7 +154,7 @@ fn narrow_vectors_stay_within_rounding() {
 #[test]
 fn every_call_that_fails_is_told_and_leaves_nothing() {
     for method in [Method::Compute, Method::Fragment] {
-        // The smallest kernels: they are made once for each call.
+        // The smallest kernels: what is not a pipeline is made once for each call.
         let settings = Settings { method, order: 2, ..Settings::default() };
         let calls = fail_each(|context| Relit::new(context, settings), &Relight::requirements(&settings));
         println!("{method:?}: {calls} calls failed in turn");

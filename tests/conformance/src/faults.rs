@@ -38,6 +38,7 @@ impl Host<'_> {
         first: u64,
     ) -> Result<(u64, u64), Refusal> {
         let shim = self.watch();
+        shim.keep_pipelines();
         let made = Cell::new(0);
         let counted = |context: &Context, host: &HostDevice<'_>| {
             let room = make(context, host);

@@ -3,6 +3,7 @@
 //!
 //! Vulkan passes no user data to its functions, so there is one watch in a process; [`Shim`] holds it exclusively.
 
+mod kept;
 mod table;
 
 use crate::HostDevice;
@@ -71,6 +72,7 @@ struct Watch {
     failing: Option<(u64, u64, vk::Result)>,
     /// The call that failed last.
     failed: Option<&'static str>,
+    kept: kept::Kept,
 }
 
 static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
@@ -126,7 +128,24 @@ unsafe extern "system" fn get_device_proc_addr(
 
 /// The watch over one device. Contexts that were adopted through it are dropped first.
 pub struct Shim {
+    device: vk::Device,
     _turn: MutexGuard<'static, ()>,
+}
+
+impl Drop for Shim {
+    fn drop(&mut self) {
+        for pipeline in watch(|watch| watch.kept.take().collect::<Vec<_>>()) {
+            // SAFETY: the true function has this signature; all contexts that were given the pipeline are gone.
+            unsafe {
+                let destroy = real("vkDestroyPipeline");
+                std::mem::transmute::<usize, vk::PFN_vkDestroyPipeline>(destroy)(
+                    self.device,
+                    pipeline,
+                    std::ptr::null(),
+                );
+            }
+        }
+    }
 }
 
 impl Shim {
@@ -146,7 +165,7 @@ impl Shim {
             real.extend(found.map(|function| (name, function as usize)));
         }
         watch(|watch| *watch = Watch { real, ..Watch::default() });
-        Self { _turn: turn }
+        Self { device, _turn: turn }
     }
 
     /// What to hand to [`airglow_gpu::AdoptInfo::get_device_proc_addr`].
@@ -161,7 +180,15 @@ impl Shim {
 
     /// Starts counting calls that may fail anew; call `nth`, from 0, fails with `result`.
     pub fn fail(&self, nth: u64, result: vk::Result) {
-        watch(|watch| (watch.fallible, watch.failing) = (0, Some((nth, 1, result))));
+        watch(|watch| {
+            (watch.fallible, watch.failing) = (0, Some((nth, 1, result)));
+            watch.kept.again();
+        });
+    }
+
+    /// Lets attempts that begin with [`Shim::fail`] share their pipelines: each makes the same ones in the same order.
+    pub fn keep_pipelines(&self) {
+        watch(|watch| watch.kept.keep());
     }
 
     /// From now on every call that may say so says that the device is lost.

@@ -100,7 +100,7 @@ fn narrow_vectors_stay_near() {
 
 #[test]
 fn every_call_that_fails_is_told_and_leaves_nothing() {
-    // The smallest kernels: they are made once for each call.
+    // The smallest kernels: what is not a pipeline is made once for each call.
     let small = Settings { fit: FitSettings { lobes: 2, ..FitSettings::default() }, ..SETTINGS() };
     let calls = fail_each(|context| Built::with(context, small), &Normals::requirements(&small));
     println!("{calls} calls failed in turn");

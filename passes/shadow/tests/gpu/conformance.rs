@@ -115,7 +115,7 @@ fn narrow_vectors_stay_within_rounding() {
 
 #[test]
 fn every_call_that_fails_is_told_and_leaves_nothing() {
-    // The smallest kernel: it is made once for each call.
+    // The smallest tables: they are made once for each call.
     let small = Settings { order: 3, ..SETTINGS() };
     let calls = fail_each(|context| Shadowed::with(context, small), &Shadow::requirements());
     println!("{calls} calls failed in turn");

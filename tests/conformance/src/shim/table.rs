@@ -1,6 +1,6 @@
 //! The functions that are watched, each with Vulkan's signature.
 
-use super::{Call, count, failure, real, record};
+use super::{Call, count, failure, kept, real, record};
 use airglow_gpu::ash::vk;
 use std::ffi::{CStr, c_void};
 
@@ -117,7 +117,7 @@ watched! {
 
 /// A function that makes an object, and the one that destroys it; objects alive are counted.
 macro_rules! pairs {
-    ($($make:ident($info:ty), $destroy:ident: $handle:ident;)*) => {
+    ($($make:ident($info:ty), $destroy:ident: $handle:ident $(, $note:expr)?;)*) => {
         $(
             #[expect(non_snake_case, reason = "Vulkan's name")]
             unsafe extern "system" fn $make(d: vk::Device, info: *const $info, c: Callbacks, out: *mut vk::$handle) -> vk::Result {
@@ -128,6 +128,10 @@ macro_rules! pairs {
                 // SAFETY: the true function has this signature; the caller's arguments are passed on.
                 let result = unsafe { std::mem::transmute::<usize, True>(real(stringify!($make)))(d, info, c, out) };
                 count(stringify!($handle), i64::from(result == vk::Result::SUCCESS));
+                $(if result == vk::Result::SUCCESS {
+                    // SAFETY: the library passes a complete description, and the object was just written.
+                    unsafe { $note(&*info, *out) };
+                })?
                 result
             }
             #[expect(non_snake_case, reason = "Vulkan's name")]
@@ -166,12 +170,12 @@ pairs! {
     vkCreatePipelineLayout(vk::PipelineLayoutCreateInfo<'static>), vkDestroyPipelineLayout: PipelineLayout;
     vkCreateQueryPool(vk::QueryPoolCreateInfo<'static>), vkDestroyQueryPool: QueryPool;
     vkCreateSampler(vk::SamplerCreateInfo<'static>), vkDestroySampler: Sampler;
-    vkCreateShaderModule(vk::ShaderModuleCreateInfo<'static>), vkDestroyShaderModule: ShaderModule;
+    vkCreateShaderModule(vk::ShaderModuleCreateInfo<'static>), vkDestroyShaderModule: ShaderModule, kept::note_module;
 }
 
-/// Makes pipelines, one at a time.
+/// Makes pipelines, one at a time, or gives one that is kept.
 macro_rules! pipelines {
-    ($($make:ident($info:ty);)*) => {
+    ($($make:ident($info:ty): $stages:expr;)*) => {
         $(
             #[expect(non_snake_case, reason = "Vulkan's name")]
             unsafe extern "system" fn $make(
@@ -195,25 +199,53 @@ macro_rules! pipelines {
                     unsafe { out.write(vk::Pipeline::null()) };
                     return result;
                 }
+                // SAFETY: the library passes one complete description.
+                let stages = unsafe { $stages(&*info) };
+                if let Some(kept) = kept::find(stringify!($make), stages) {
+                    // SAFETY: the caller has room for one.
+                    unsafe { out.write(kept) };
+                    count("Pipeline", 1);
+                    return vk::Result::SUCCESS;
+                }
                 // SAFETY: the true function has this signature; the caller's arguments are passed on.
                 let make = unsafe { std::mem::transmute::<usize, True>(real(stringify!($make))) };
                 // SAFETY: as above.
                 let result = unsafe { make(d, cache, n, info, c, out) };
-                count("Pipeline", i64::from(n) * i64::from(result == vk::Result::SUCCESS));
+                if result == vk::Result::SUCCESS {
+                    count("Pipeline", i64::from(n));
+                    // SAFETY: the object was just written.
+                    kept::note(stringify!($make), stages, unsafe { *out });
+                }
                 result
             }
         )*
     };
 }
 
+type Stages<'a> = &'a [vk::PipelineShaderStageCreateInfo<'static>];
+
+fn stage_of<'a>(info: &'a vk::ComputePipelineCreateInfo<'static>) -> Stages<'a> {
+    std::slice::from_ref(&info.stage)
+}
+
+/// # Safety
+/// The description is complete.
+unsafe fn stages_of<'a>(info: &'a vk::GraphicsPipelineCreateInfo<'static>) -> Stages<'a> {
+    // SAFETY: the caller vouches for the array and its count.
+    unsafe { std::slice::from_raw_parts(info.p_stages, info.stage_count as usize) }
+}
+
 pipelines! {
-    vkCreateComputePipelines(vk::ComputePipelineCreateInfo<'static>);
-    vkCreateGraphicsPipelines(vk::GraphicsPipelineCreateInfo<'static>);
+    vkCreateComputePipelines(vk::ComputePipelineCreateInfo<'static>): stage_of;
+    vkCreateGraphicsPipelines(vk::GraphicsPipelineCreateInfo<'static>): stages_of;
 }
 
 #[expect(non_snake_case, reason = "Vulkan's name")]
 unsafe extern "system" fn vkDestroyPipeline(d: vk::Device, pipeline: vk::Pipeline, c: Callbacks) {
     count("Pipeline", -i64::from(pipeline != vk::Pipeline::null()));
+    if kept::holds(pipeline) {
+        return;
+    }
     // SAFETY: the true function has this signature; the caller's arguments are passed on.
     unsafe {
         std::mem::transmute::<usize, vk::PFN_vkDestroyPipeline>(real("vkDestroyPipeline"))(
