@@ -1,5 +1,6 @@
 //! `airglow explain`: why a scene is lit with the settings it is lit with.
 
+use airglow::math::Preset;
 use airglow::relight::{Relight, Settings};
 use airglow_graph::LeftOut;
 use airglow_scene::{Quality, Scene, Shadow, Storage};
@@ -14,6 +15,7 @@ use crate::host::{device, lighting};
 use crate::output::Output;
 use crate::report::html::bytes;
 use crate::report::model::{Curve, Machine, Point};
+use crate::report::presets::table::{self, Row};
 use crate::report::relight::curves::Measurement;
 use crate::report::relight::workload::{Effort, Workload};
 
@@ -41,6 +43,16 @@ struct Explanation {
     machine: Machine,
     workload: String,
     knobs: Vec<Knob>,
+    /// As they were measured on the scene that shows the pass, on this device or the nearest that was.
+    presets: Vec<Row>,
+}
+
+impl Explanation {
+    fn new(pass: Pass, machine: Machine, workload: String, knobs: Vec<Knob>) -> Self {
+        let row = |preset| table::find(pass.name(), preset, &machine.device).cloned();
+        let presets = Preset::ALL.into_iter().filter_map(row).collect();
+        Self { machine, workload, knobs, presets }
+    }
 }
 
 /// A knob: the scene's setting, what the curve would choose, and the curve.
@@ -108,7 +120,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             knob(measurement.storage()?, storage_name(quality), stated(&scene, arguments, "storage")),
             knob(measurement.method()?, "compute".to_owned(), "the pass's default".to_owned()),
         ];
-        Ok(Explanation { machine: device.machine(), workload: workload.description.clone(), knobs })
+        Ok(Explanation::new(Pass::Relight, device.machine(), workload.description.clone(), knobs))
     })?;
     output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
 }
@@ -130,7 +142,7 @@ fn fog(scene: &Scene, global: &Global, output: &Output) -> Outcome {
             let setting = shipped(&curve);
             knob(curve, setting, "the pass's default".to_owned())
         });
-        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+        Ok(Explanation::new(Pass::Fog, device.machine(), workload, knobs.collect()))
     })?;
     output.result(&explanation, |explanation| text(explanation, None))
 }
@@ -153,7 +165,7 @@ fn radiance(scene: &Scene, cache: &std::path::Path, global: &Global, output: &Ou
             knob(curve, setting, "the pass's default".to_owned())
         });
         let (machine, workload) = (device.machine(), workload.description.clone());
-        Ok(Explanation { machine, workload, knobs: knobs.collect() })
+        Ok(Explanation::new(Pass::Radiance, machine, workload, knobs.collect()))
     })?;
     output.result(&explanation, |explanation| text(explanation, Some(scene.quality.shadow)))
 }
@@ -170,7 +182,7 @@ fn normals(scene: Scene, global: &Global, output: &Output) -> Outcome {
             knob(curve, setting, "the map and its material".to_owned())
         });
         let workload = maps.iter().map(Map::words).collect::<Vec<_>>().join(", ");
-        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+        Ok(Explanation::new(Pass::Normals, device.machine(), workload, knobs.collect()))
     })?;
     output.result(&explanation, |explanation| text(explanation, None))
 }
@@ -196,7 +208,7 @@ fn shadow(scene: &Scene, global: &Global, output: &Output) -> Outcome {
                 knob(curve, setting, "the pass's default".to_owned())
             }
         });
-        Ok(Explanation { machine: device.machine(), workload, knobs: knobs.collect() })
+        Ok(Explanation::new(Pass::Shadow, device.machine(), workload, knobs.collect()))
     })?;
     output.result(&explanation, |explanation| text(explanation, None))
 }
@@ -282,6 +294,13 @@ fn text(explanation: &Explanation, shadow: Option<Shadow>) -> String {
                 number(rival.error_model_p95)
             ));
         }
+    }
+    if let Some(row) = explanation.presets.first() {
+        text.push_str(&format!(
+            "\npresets, measured on {}\n  timed: {}\n  error: {}\n",
+            row.date, row.timed, row.norm
+        ));
+        explanation.presets.iter().for_each(|row| text.push_str(&format!("  {}\n", row.words())));
     }
     text
 }

@@ -19,6 +19,8 @@ pub mod plan;
 pub mod render;
 #[cfg(feature = "relight")]
 pub mod report;
+#[cfg(feature = "relight")]
+pub mod report_frame;
 pub mod requirements;
 pub mod scene;
 #[cfg(feature = "relight")]

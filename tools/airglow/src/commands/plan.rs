@@ -16,6 +16,7 @@ use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
 use crate::host::shadow;
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
+use crate::report::presets::table::{self, Row};
 
 /// Frames drawn for `--measure`.
 const MEASURED_FRAMES: usize = WARM_UP + 9;
@@ -103,11 +104,15 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             }
             false => None,
         };
+        let presets = table::asked(&scene.presets, &device.machine().device);
         let form = if output.json() { Form::Json } else { arguments.form };
         Ok(match form {
-            Form::Text => plan.text() + &passes.map_or(String::new(), |passes| measured(&passes)),
+            Form::Text => {
+                let measured = passes.map_or(String::new(), |passes| measured(&passes));
+                plan.text() + &measured + &table::text(&presets)
+            }
             Form::Mermaid => plan.mermaid(),
-            Form::Json => with_passes(plan.json().map_err(Failure::work)?, passes)?,
+            Form::Json => with_passes(plan.json().map_err(Failure::work)?, passes, &presets)?,
         })
     })?;
     print(&text)
@@ -138,11 +143,18 @@ fn measured(passes: &[PassStat]) -> String {
     format!("measured (median, 5th to 95th percentile; counts are the same on every machine)\n{lines}")
 }
 
-/// The plan as JSON, with the passes measured as `measured`.
-fn with_passes(plan: String, passes: Option<Vec<PassStat>>) -> Outcome<String> {
-    let Some(passes) = passes else { return Ok(plan) };
+/// The plan as JSON, with the passes measured as `measured`, and what presets took as `presets`.
+fn with_passes(plan: String, passes: Option<Vec<PassStat>>, presets: &[&Row]) -> Outcome<String> {
+    if passes.is_none() && presets.is_empty() {
+        return Ok(plan);
+    }
     let mut plan: serde_json::Value = serde_json::from_str(&plan).map_err(Failure::work)?;
-    plan["measured"] = serde_json::to_value(passes).map_err(Failure::work)?;
+    if let Some(passes) = passes {
+        plan["measured"] = serde_json::to_value(passes).map_err(Failure::work)?;
+    }
+    if !presets.is_empty() {
+        plan["presets"] = serde_json::to_value(presets).map_err(Failure::work)?;
+    }
     serde_json::to_string_pretty(&plan).map_err(Failure::work)
 }
 

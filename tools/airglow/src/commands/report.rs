@@ -8,6 +8,7 @@ use airglow::relight::{Relight, Settings, Storage};
 use clap::{Args, ValueEnum};
 
 use crate::cli::Global;
+use crate::commands::report_frame;
 use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
 use crate::host::device;
@@ -33,12 +34,13 @@ use crate::report::write;
   airglow report radiance -o out/radiance
   airglow report normals -o out/normals
   airglow report shadow -o out/shadow
+  airglow report presets -o out/presets           the presets of all passes
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
 pub struct Arguments {
-    /// The pass.
-    #[arg(value_enum, default_value_t = Pass::Relight)]
-    pass: Pass,
+    /// A pass; `presets` for those of all passes; or a scene file, for all passes of its frame.
+    #[arg(value_name = "PASS|presets|SCENE", default_value = "relight", value_parser = subject)]
+    subject: Subject,
     /// The scene to light: a scene file or a glTF file. For relight assets/scenes/spot.toml unless given, for fog
     /// assets/scenes/street.toml, for radiance assets/scenes/blocks.toml, for normals
     /// assets/scenes/grooves.toml and weave.toml, for shadow assets/scenes/walkers.toml.
@@ -49,13 +51,34 @@ pub struct Arguments {
     environment: Option<PathBuf>,
     /// Folder of the report.
     #[arg(long, short = 'o', value_name = "FOLDER")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Fewer rays and rounds: enough to see the shape of the curves.
     #[arg(long)]
-    quick: bool,
+    pub(super) quick: bool,
     /// Measure nothing; overlay these `report.json` files instead. May be given several times.
     #[arg(long, value_name = "FILE.json")]
     merge: Vec<PathBuf>,
+}
+
+/// What is measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The knobs of a pass.
+    Pass(Pass),
+    /// The presets of all passes, each on the scene that shows it.
+    Presets,
+    /// The frame of a scene.
+    Frame(PathBuf),
+}
+
+/// Reads what is measured: a word that is neither a pass nor `presets` is a file.
+fn subject(text: &str) -> Result<Subject, String> {
+    match (Pass::from_str(text, false), text) {
+        (Ok(pass), _) => Ok(Subject::Pass(pass)),
+        (Err(_), "presets") => Ok(Subject::Presets),
+        (Err(_), file) if file.contains('.') => Ok(Subject::Frame(PathBuf::from(file))),
+        (Err(_), word) => Err(format!("`{word}` is no pass and no scene file")),
+    }
 }
 
 /// Passes that can be measured.
@@ -79,7 +102,7 @@ pub enum Pass {
 
 impl Pass {
     /// The scene that shows it.
-    fn scene(self) -> &'static str {
+    pub fn scene(self) -> &'static str {
         match self {
             Self::Relight => "assets/scenes/spot.toml",
             #[cfg(feature = "fog")]
@@ -93,7 +116,8 @@ impl Pass {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// As commands and tables have it.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Relight => "relight",
             #[cfg(feature = "fog")]
@@ -109,20 +133,29 @@ impl Pass {
 }
 
 impl Arguments {
+    /// The pass; of other subjects the one that all frames have.
+    fn pass(&self) -> Pass {
+        match self.subject {
+            Subject::Pass(pass) => pass,
+            Subject::Presets | Subject::Frame(_) => Pass::Relight,
+        }
+    }
+
     fn scene(&self) -> PathBuf {
-        self.scene.clone().unwrap_or_else(|| PathBuf::from(self.pass.scene()))
+        self.scene.clone().unwrap_or_else(|| PathBuf::from(self.pass().scene()))
     }
 
     /// Whether the pass has more than one scene of its own.
     fn is_of_normals(&self) -> bool {
-        self.pass.name() == "normals"
+        self.pass().name() == "normals"
     }
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let reports = if arguments.merge.is_empty() {
-        vec![match arguments.pass {
+        vec![match arguments.pass() {
+            _ if arguments.subject == Subject::Presets => report_frame::presets(arguments, global, output)?,
             Pass::Relight => relight(arguments, global, output)?,
             #[cfg(feature = "fog")]
             Pass::Fog => fog(arguments, global, output)?,
@@ -274,7 +307,7 @@ fn command(arguments: &Arguments, machine: &Machine) -> String {
     let quick = if arguments.quick { " --quick" } else { "" };
     format!(
         "airglow report {}{scene}{environment} -o {}{quick} --device \"{}\"",
-        arguments.pass.name(),
+        arguments.pass().name(),
         arguments.output.display(),
         machine.device
     )

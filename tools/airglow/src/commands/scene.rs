@@ -11,7 +11,7 @@ use crate::host::unread;
 use crate::output::Output;
 
 /// Where bakes are kept, unless told otherwise.
-const CACHE: &str = ".cache/airglow";
+pub const CACHE: &str = ".cache/airglow";
 
 /// The variable that names the folder of files that scene files name `data:…`.
 const DATA: &str = "AIRGLOW_DATA";

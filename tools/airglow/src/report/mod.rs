@@ -13,6 +13,7 @@ pub mod model;
 pub mod normals;
 pub mod pareto;
 pub mod plot;
+pub mod presets;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod radiance;
 pub mod ranking;

@@ -3,7 +3,7 @@
 use super::model::{Point, Report};
 use crate::failure::{Failure, Outcome};
 
-const HEADER: [&str; 29] = [
+const HEADER: [&str; 30] = [
     "pass",
     "device",
     "driver",
@@ -33,6 +33,7 @@ const HEADER: [&str; 29] = [
     "random_below",
     "random_bad",
     "norm",
+    "timed",
 ];
 
 /// The rows of all reports under one header; a value that was not measured is an empty cell.
@@ -55,7 +56,7 @@ pub fn csv(reports: &[Report]) -> Outcome<Vec<u8>> {
                 .into();
                 row.push(curve.is_chosen(point).to_string());
                 row.extend(numbers(point));
-                row.push(curve.norm.clone());
+                row.extend([curve.norm.clone(), curve.timed.clone()]);
                 writer.write_record(&row).map_err(broken)?;
             }
         }

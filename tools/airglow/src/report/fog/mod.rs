@@ -6,6 +6,7 @@ mod numbers;
 mod orders;
 mod pass;
 mod picture;
+mod presets;
 mod random;
 mod table_sizes;
 
@@ -61,19 +62,16 @@ impl Measurement<'_> {
         Ok((picture.words(), curves))
     }
 
+    /// The shared presets on a scene.
+    pub fn presets(&self, scene: &Scene) -> Outcome<Curve> {
+        self.presets_of(&Picture::new(self.device, scene)?, &Orders::new())
+    }
+
     /// The knobs of the pass on a picture, each error of its own.
     fn knobs(&self, picture: &Picture, orders: &Orders) -> Outcome<Vec<Curve>> {
         let model = orders.over_peak(picture.nearest())?;
         let mut curves = vec![self.preset(picture)?, self.bound(picture)?];
-        for curve in &mut curves {
-            curve.norm.push_str(
-                ". model: single scattering against all orders, root mean square over the glow's peak, at the optical \
-                 distance of the nearest lamp; no knob changes it",
-            );
-            for point in &mut curve.points {
-                point.error.model = Some(model);
-            }
-        }
+        curves.iter_mut().for_each(|curve| against_all_orders(curve, model));
         Ok(curves)
     }
 
@@ -91,4 +89,13 @@ impl Measurement<'_> {
                 .to_owned(),
         ]
     }
+}
+
+/// Gives every point of a curve the error of the model, which no knob changes.
+fn against_all_orders(curve: &mut Curve, model: f64) {
+    curve.norm.push_str(
+        ". model: single scattering against all orders, root mean square over the glow's peak, at the optical distance of \
+         the nearest lamp; no knob changes it",
+    );
+    curve.points.iter_mut().for_each(|point| point.error.model = Some(model));
 }

@@ -2,9 +2,10 @@
 
 use airglow::fog::{Fog, Frame, Light, PhaseKind, Preset, Settings, View};
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
-use airglow_gpu::{Image, Imports, Label};
+use airglow_gpu::{Image, Imports, Label, Readback};
 use airglow_graph::{Access, Graph, ImageDesc, PassKind, State};
 use glam::DVec3;
+use half::f16;
 
 use super::evaluators::Measurement;
 use super::picture::{Picture, SIDE};
@@ -91,7 +92,7 @@ impl Measurement<'_> {
         })
     }
 
-    fn pass_points(
+    pub(super) fn pass_points(
         &self,
         what: &str,
         picture: &Picture,
@@ -113,8 +114,7 @@ impl Measurement<'_> {
                 recorder.transition(target, Access::ColorAttachmentWrite, Access::TransferSource)?;
                 recorder.read_back_image(&target.full_view()?)
             });
-            let texels: Vec<[f32; 4]> = copy.and_then(|copy| copy.read()).map_err(Failure::work)?;
-            let airlight: Vec<[f32; 3]> = texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
+            let airlight = colours(&copy.map_err(Failure::work)?, settings[place].1.format)?;
             let setting = Some(picture.errors(&airlight)?.largest);
             // What a bound leaves out is an error of the setting.
             let all = settings[place].1.bound == 0.0;
@@ -188,7 +188,19 @@ impl Measurement<'_> {
     }
 }
 
-const NORM: &str = "setting: largest error against quadrature in f64, in half 8-bit steps of the exposed pixel over \
+/// The colours of a picture read back, whose texels are floats or half floats.
+fn colours(copy: &Readback, format: Format) -> Outcome<Vec<[f32; 3]>> {
+    let texels: Vec<[f32; 4]> = match format {
+        Format::R16G16B16A16_SFLOAT => {
+            let texels: Vec<[f16; 4]> = copy.read().map_err(Failure::work)?;
+            texels.into_iter().map(|texel| texel.map(f16::to_f32)).collect()
+        }
+        _ => copy.read().map_err(Failure::work)?,
+    };
+    Ok(texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+}
+
+pub(super) const NORM: &str = "setting: largest error against quadrature in f64, in half 8-bit steps of the exposed pixel over \
                     black surfaces, where steps are finest; below 1 it is not seen. arithmetic: the same, against \
                     the same taps in f64, where no bound leaves lights out";
 

@@ -2,6 +2,7 @@
 
 mod errors;
 mod numbers;
+mod presets;
 mod shading;
 mod steps;
 mod workload;
@@ -113,7 +114,7 @@ impl Measurement<'_> {
     fn methods(&self, map: &Map, brdfs: &[Brdf]) -> Outcome<Vec<Curve>> {
         let errors = errors::of_map(self.device, map, brdfs, self.effort.texels)?;
         let of_brdf = |(brdf, errors): (&Brdf, Vec<f64>)| {
-            let times = shading::times(self, map, *brdf)?;
+            let times = shading::times(self, map, *brdf, &Method::ALL)?;
             let points =
                 Method::ALL.into_iter().zip(errors).zip(times).map(|((method, error), (ms, counts))| Point {
                     setting: method.to_string(),

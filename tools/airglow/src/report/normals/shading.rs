@@ -17,7 +17,12 @@ use crate::report::timed_plan::{self, TimedPlan};
 pub const SIDE: u32 = 512;
 
 /// Milliseconds of each method, and what it does.
-pub fn times(measurement: &Measurement<'_>, map: &Map, brdf: Brdf) -> Outcome<Vec<(Vec<f64>, Counts)>> {
+pub fn times(
+    measurement: &Measurement<'_>,
+    map: &Map,
+    brdf: Brdf,
+    methods: &[Method],
+) -> Outcome<Vec<(Vec<f64>, Counts)>> {
     let device = measurement.device;
     let run = device.bench();
     let bench = Bench { context: device.context(), run: &run };
@@ -25,7 +30,7 @@ pub fn times(measurement: &Measurement<'_>, map: &Map, brdf: Brdf) -> Outcome<Ve
     let settings = Settings { budget: Some(u64::MAX), ..Settings::default() };
     let mut plans = Vec::new();
     let mut bytes = Vec::new();
-    for method in Method::ALL {
+    for &method in methods {
         let kept = bench.kept(&map.normals, method, &settings).map_err(Failure::work)?;
         let kept =
             kept.ok_or_else(|| Failure::input(format!("{}: a single texel has no levels", map.name)))?;

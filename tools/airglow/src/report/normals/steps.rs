@@ -17,7 +17,7 @@ use crate::report::model::{Choice, Curve, Errors, Number, Point};
 const STEPS: [usize; 6] = [0, 4, 8, 12, 20, 32];
 const LOBES: usize = 4;
 /// What errors are taken at.
-const BRDF: Brdf = Brdf::BlinnPhong { exponent: 50.0 };
+pub(super) const BRDF: Brdf = Brdf::BlinnPhong { exponent: 50.0 };
 /// Where builds are timed: the goal is for a map of this size.
 const GOAL: usize = 1024;
 
@@ -42,7 +42,7 @@ impl Measurement<'_> {
                 / 3;
         let mut points = Vec::new();
         for (steps, milliseconds) in STEPS.into_iter().zip(times) {
-            let error = Errors { model: Some(error(&bench, &map.normals, steps)?), ..Errors::default() };
+            let error = Errors { model: Some(error(&bench, &map.normals, &settings(steps))?), ..Errors::default() };
             let counts = Default::default();
             let setting = format!("{steps} steps");
             points.push(Point { setting, milliseconds, memory, counts, error, distribution: None });
@@ -98,8 +98,9 @@ fn settings(iterations: usize) -> Settings {
 }
 
 /// The error of a chain over a few texels of each level, at the highlights of its own lobes.
-fn error(bench: &Bench<'_>, normals: &NormalMap, steps: usize) -> Outcome<f64> {
-    let levels = bench.build(normals, &settings(steps)).map_err(Failure::work)?;
+pub(super) fn error(bench: &Bench<'_>, normals: &NormalMap, settings: &Settings) -> Outcome<f64> {
+    let levels = bench.build(normals, settings).map_err(Failure::work)?;
+    let count = settings.fit.lobes;
     let (mut rows, mut truths) = (Vec::new(), Vec::new());
     for (finer, level) in levels.iter().enumerate().skip(1) {
         for at in 0..16 {
@@ -112,7 +113,7 @@ fn error(bench: &Bench<'_>, normals: &NormalMap, steps: usize) -> Outcome<f64> {
             let view = 2.0 * light.dot(half) * half - light;
             let directions = Directions::new(light, view).map_err(Failure::work)?;
             truths.push(reference::radiance(&footprint, BRDF, directions));
-            let lobes = level.lobes[texel * LOBES..][..LOBES].iter().map(|&lobe| lobe.into()).collect();
+            let lobes = level.lobes[texel * count..][..count].iter().map(|&lobe| lobe.into()).collect();
             rows.push(Row { lobes, brdf: BRDF, directions });
         }
     }

@@ -2,6 +2,7 @@
 
 mod curves;
 mod numbers;
+mod presets;
 mod race;
 mod rivals;
 mod truth;

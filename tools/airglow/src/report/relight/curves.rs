@@ -136,7 +136,7 @@ impl Measurement<'_> {
     }
 
     /// Points of settings of the pass: device time of a frame, and all three errors.
-    fn frame_points(&self, what: &str, settings: Vec<(String, Settings)>) -> Outcome<Vec<Point>> {
+    pub(super) fn frame_points(&self, what: &str, settings: Vec<(String, Settings)>) -> Outcome<Vec<Point>> {
         let full = &self.workload.converged;
         let best = Settings { order: FULL_ORDER, ..Settings::default() };
         let converged = self.colours(best, full)?;
@@ -168,7 +168,7 @@ impl Measurement<'_> {
         Choice { reason: format!("{reason}. Measured on {device}."), ..choice }
     }
 
-    fn curve(
+    pub(super) fn curve(
         &self,
         knob: &str,
         question: &str,

@@ -4,6 +4,7 @@ pub mod baker;
 pub mod choice;
 pub mod curves;
 pub mod errors;
+mod presets;
 mod rays;
 pub mod rivals;
 pub mod subset;

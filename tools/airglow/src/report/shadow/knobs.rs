@@ -53,7 +53,7 @@ pub fn curves(measurement: &Measurement<'_>, shading: &Shading) -> Outcome<Vec<C
     Ok(curves)
 }
 
-fn curve(
+pub(super) fn curve(
     measurement: &Measurement<'_>,
     shading: &Shading,
     knob: &str,

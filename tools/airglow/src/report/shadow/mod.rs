@@ -4,6 +4,7 @@
 mod knobs;
 mod methods;
 mod numbers;
+mod presets;
 mod shading;
 
 use airglow::shadow::bench::{Bench, SphereKernel};
