@@ -9,9 +9,17 @@
 // FILTER_HARMONICS nine coefficients of the normals in three layers, for matt surfaces
 // MAPPED_OCTAHEDRAL 1: lobes in four bytes each
 // MAPPED_PARTS 4: a pixel's footprint in quarters, each looked up and shaded by itself; 1: as a whole
+// HOST_INCIDENT 1: light from all around too, by the incident radiance of the vertices
+
+#ifndef MAPPED_PARTS
+#define MAPPED_PARTS 1
+#endif
 
 #include "normals/harmonics.glsl"
 #include "normals/microfacet.glsl"
+#if HOST_INCIDENT
+#include "host/incident.glsl"
+#endif
 
 layout(set = 0, binding = 5) uniform texture2D normal_map; // RGB = normal * 0.5 + 0.5
 layout(set = 0, binding = 6) uniform sampler normal_map_sampler;
@@ -82,13 +90,19 @@ vec2 normal_reflected(vec3 normal, float alpha, vec3 l, vec3 v, vec3 h)
     return nl * vec2(1.0 / PI, normal_facets(nh, alpha) * normals_masking(alpha, nl, max(dot(normal, v), 1e-4)));
 }
 
+// What the length of the mean normal makes of alpha.
+float mean_widened(float size, float alpha)
+{
+    float exponent = 2.0 / (alpha * alpha) - 2.0;
+    float lowered = exponent * size / (size + exponent * (1.0 - size));
+    return sqrt(2.0 / (lowered + 2.0));
+}
+
 // The mean normal, whose length widens the reflection.
 vec2 mean_reflected(vec3 mean, float alpha, vec3 l, vec3 v, vec3 h)
 {
     float size = clamp(length(mean), 1e-3, 1.0);
-    float exponent = 2.0 / (alpha * alpha) - 2.0;
-    float lowered = exponent * size / (size + exponent * (1.0 - size));
-    return normal_reflected(mean / size, sqrt(2.0 / (lowered + 2.0)), l, v, h);
+    return normal_reflected(mean / size, mean_widened(size, alpha), l, v, h);
 }
 
 // The same of what is kept of the distribution.
@@ -134,6 +148,43 @@ vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
 #endif
 }
 
+#if HOST_INCIDENT
+// The same of light from all around.
+void kept_gathered(inout Gathered sum, float share, Mapped mapped, float alpha, vec3 view)
+{
+#if defined(FILTER_LOBES)
+    for (int i = 0; i < MAPPED_LAYERS; ++i) {
+        vec4 stored = mapped.kept[i];
+        if (stored.w > 1e-4) {
+            NormalsLobe lobe = normals_lobe(stored);
+            normals_add_moments(sum.diffuse, share * stored.w * normals_lobe_bands(lobe), lobe.axis);
+            gather_specular(sum, share * stored.w, lobe, alpha, view);
+        }
+    }
+#elif defined(FILTER_TOKSVIG)
+    vec3 mean = mapped.kept[0].xyz;
+    gather_normal(sum, share, normalize(mean + vec3(0.0, 0.0, 1e-6)), mean_widened(clamp(length(mean), 1e-3, 1.0), alpha), view);
+#elif defined(FILTER_HARMONICS)
+#define COEFFICIENT(i) mapped.kept[(i) / 4][(i) % 4]
+    vec3 mean = 2.0466534 * vec3(-COEFFICIENT(3), -COEFFICIENT(1), COEFFICIENT(2));
+    sum.diffuse.weight += share;
+    sum.diffuse.mean += share * mean;
+    float zz = 2.1137 * COEFFICIENT(6);
+    float difference = 1.8305733 * COEFFICIENT(8);
+    sum.diffuse.squares += share * vec3(0.5 * difference, -0.5 * difference, 0.5 * zz);
+    sum.diffuse.products += share * 0.9152912 * vec3(-COEFFICIENT(5), -COEFFICIENT(7), COEFFICIENT(4));
+    gather_specular(sum, share, normals_lobe(vec4(mean, 1.0)), alpha, view);
+#elif defined(FILTER_LEAN)
+    vec2 mean = mapped.kept[0].xy;
+    vec3 moments = mapped.kept[1].xyz;
+    float spread = max(moments.x - mean.x * mean.x, 0.0) + max(moments.z - mean.y * mean.y, 0.0);
+    gather_normal(sum, share, normalize(vec3(mean, 1.0)), min(sqrt(alpha * alpha + spread), 1.0), view);
+#else
+    gather_normal(sum, share, normalize(mapped.kept[0].xyz + vec3(0.0, 0.0, 1e-6)), alpha, view);
+#endif
+}
+#endif
+
 // How a pixel sees the surface: tangent, bitangent and normal in the world, the view in these axes, and the material.
 struct Seen {
     mat3 axes;
@@ -165,8 +216,10 @@ vec3 mapped_lit(Mapped mapped, Seen seen, vec3 position)
     return sum;
 }
 
-// Radiance towards the eye; `surface` is metallic and roughness, `tangent` has the sign of the bitangent as w.
-vec3 lights_reflected_mapped(vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4 tangent, vec3 position, vec3 eye)
+// Radiance towards the eye; `surface` is metallic and roughness, `tangent` has the sign of the bitangent as w, `flat_colour` is
+// the light that a white diffuse surface would reflect of what comes from all around, were its map flat.
+vec3 mapped_reflected(
+    vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4 tangent, vec3 position, vec3 eye, vec3 flat_colour)
 {
     vec3 n = normalize(normal);
     vec3 t = normalize(tangent.xyz - n * dot(n, tangent.xyz));
@@ -181,15 +234,32 @@ vec3 lights_reflected_mapped(vec3 base, vec2 surface, vec2 uv, vec3 normal, vec4
     seen.diffuse = (1.0 - surface.x) * base;
     vec2 across = dFdx(uv);
     vec2 along = dFdy(uv);
-#if MAPPED_PARTS == 4
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; ++i) {
+#if HOST_INCIDENT
+    Gathered gathered = gathered_none();
+#endif
+    const float part = 1.0 / float(MAPPED_PARTS);
+    for (int i = 0; i < MAPPED_PARTS; ++i) {
+#if MAPPED_PARTS == 4
         vec2 side = 0.5 * vec2(ivec2(i & 1, i >> 1)) - 0.25;
         Mapped mapped = mapped_at(uv + side.x * across + side.y * along, 0.5 * across, 0.5 * along);
-        sum += 0.25 * mapped_lit(mapped, seen, position);
-    }
-    return sum;
 #else
-    return mapped_lit(mapped_at(uv, across, along), seen, position);
+        Mapped mapped = mapped_at(uv, across, along);
+#endif
+        sum += part * mapped_lit(mapped, seen, position);
+#if HOST_INCIDENT
+        if (mapped.share > 0.0) {
+            gather_normal(gathered, part * mapped.share, mapped.normal, seen.alpha, seen.view);
+        }
+        if (mapped.share < 1.0) {
+            kept_gathered(gathered, part * (1.0 - mapped.share), mapped, seen.alpha, seen.view);
+        }
+#endif
+    }
+#if HOST_INCIDENT
+    bool matt = (material.flags & 4u) != 0u;
+    return sum + gathered_radiance(gathered, flat_colour, base, seen.f0, seen.diffuse, seen.axes, matt);
+#else
+    return sum + base * flat_colour;
 #endif
 }

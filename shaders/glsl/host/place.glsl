@@ -6,6 +6,7 @@
 // HOST_LIGHTS 1: the scene has lights that shine on surfaces, whose place and normal the fragment stage needs.
 // FOG_COMPLETE 2: the lights shine on the vertices, through a medium; with AIRGLOW_FOG and HOST_LIGHTS.
 // HOST_TANGENTS 1: the surface has a normal map, whose axes the fragment stage needs, too; only with HOST_LIGHTS.
+// HOST_INCIDENT 1: and the incident radiance of its vertices, nine coefficients; only with HOST_TANGENTS.
 
 #include "host/frame.glsl"
 #include "host/material.glsl"
@@ -24,6 +25,17 @@ layout(location = 3) in vec3 normal;
 #if HOST_TANGENTS
 layout(location = 4) in vec4 tangent;
 #endif
+#if HOST_INCIDENT
+layout(location = 5) in vec3 incident_0;
+layout(location = 6) in vec3 incident_1;
+layout(location = 7) in vec3 incident_2;
+layout(location = 8) in vec3 incident_3;
+layout(location = 9) in vec3 incident_4;
+layout(location = 10) in vec3 incident_5;
+layout(location = 11) in vec3 incident_6;
+layout(location = 12) in vec3 incident_7;
+layout(location = 13) in vec3 incident_8;
+#endif
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec3 out_light;
@@ -37,6 +49,17 @@ layout(location = 3) out vec3 out_position;
 #endif
 #if HOST_TANGENTS
 layout(location = 4) out vec4 out_tangent;
+#endif
+#if HOST_INCIDENT
+layout(location = 5) out vec3 out_incident_0;
+layout(location = 6) out vec3 out_incident_1;
+layout(location = 7) out vec3 out_incident_2;
+layout(location = 8) out vec3 out_incident_3;
+layout(location = 9) out vec3 out_incident_4;
+layout(location = 10) out vec3 out_incident_5;
+layout(location = 11) out vec3 out_incident_6;
+layout(location = 12) out vec3 out_incident_7;
+layout(location = 13) out vec3 out_incident_8;
 #endif
 
 void main()
@@ -60,6 +83,17 @@ void main()
 #endif
 #if HOST_TANGENTS
     out_tangent = vec4(linear * tangent.xyz, tangent.w);
+#endif
+#if HOST_INCIDENT
+    out_incident_0 = incident_0;
+    out_incident_1 = incident_1;
+    out_incident_2 = incident_2;
+    out_incident_3 = incident_3;
+    out_incident_4 = incident_4;
+    out_incident_5 = incident_5;
+    out_incident_6 = incident_6;
+    out_incident_7 = incident_7;
+    out_incident_8 = incident_8;
 #endif
     out_uv = vec2(dot(material.uv_linear.xy, uv), dot(material.uv_linear.zw, uv)) + material.uv_offset;
 #if AIRGLOW_RELIGHT

@@ -5,6 +5,7 @@
 // FOG_COMPLETE 1: and what it makes of the surface's light on its way to the eye, by the complete model in one draw;
 // 2: the same computed at each vertex, and the light of lamps with it. A texture then tints their highlights, too.
 // AIRGLOW_NORMALS 1: the surface has a normal map, filtered and shaded by those of the normals room; needs HOST_LIGHTS.
+// HOST_INCIDENT 1: and has the incident radiance of its vertices; needs AIRGLOW_NORMALS.
 
 #include "host/frame.glsl"
 #include "host/material.glsl"
@@ -41,15 +42,19 @@ void main()
     if (albedo.a < material.emissive_cutoff.w) { discard; }
     bool unlit = (material.flags & 1u) != 0u;
     // Interpolated SH light may dip below zero where the vectors ring.
-    vec3 reflected = unlit ? albedo.rgb : albedo.rgb * max(light, vec3(0.0));
+    vec3 arriving = max(light, vec3(0.0));
 #if AIRGLOW_NORMALS
+    vec3 reflected = albedo.rgb;
     if (!unlit) {
         vec2 surface = unpackHalf2x16(material.surface);
-        reflected += lights_reflected_mapped(albedo.rgb, surface, uv, normal, tangent, position, frame.eye.xyz);
+        reflected = mapped_reflected(albedo.rgb, surface, uv, normal, tangent, position, frame.eye.xyz, arriving);
     }
-#elif FOG_COMPLETE == 2
+#else
+    vec3 reflected = unlit ? albedo.rgb : albedo.rgb * arriving;
+#endif
+#if FOG_COMPLETE == 2
     reflected += texel.rgb * lit;
-#elif HOST_LIGHTS
+#elif HOST_LIGHTS && !AIRGLOW_NORMALS
     if (!unlit) {
         reflected += lights_reflected(albedo.rgb, unpackHalf2x16(material.surface), normal, position, frame.eye.xyz);
     }

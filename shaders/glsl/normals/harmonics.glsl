@@ -55,6 +55,50 @@ float normals_rectified_evenly(float mean, float square)
         1.0 / 3.0 + NORMALS_HARMONIC_SUM(light, vec3(0.0, 0.0, 8.0 / 15.0 * PI), COEFFICIENT)) \
         / PI)
 
+// What matters of a distribution of directions to light of nine coefficients: its weight, its mean vector, and the squares
+// and products of its components, the unit matrix left out. A sum over lobes or texels, in any one frame.
+struct NormalsMoments {
+    float weight;
+    vec3 mean;
+    vec3 squares;  // xx, yy, zz
+    vec3 products; // yz, zx, xy
+};
+
+// `bands`: of a lobe about the direction, times its weight.
+void normals_add_moments(inout NormalsMoments sum, vec3 bands, vec3 direction)
+{
+    sum.weight += bands.x;
+    sum.mean += bands.y * direction;
+    sum.squares += bands.z * direction * direction;
+    sum.products += bands.z * direction.yzx * direction.zxy;
+}
+
+// The same about other axes: `axes` has the old ones as columns.
+NormalsMoments normals_turned_moments(NormalsMoments moments, mat3 axes)
+{
+    vec3 squares = moments.squares;
+    vec3 products = moments.products;
+    mat3 tensor = axes * mat3(squares.x, products.z, products.y, products.z, squares.y, products.x, products.y, products.x, squares.z);
+    mat3 rows = transpose(axes);
+    NormalsMoments turned;
+    turned.weight = moments.weight;
+    turned.mean = axes * moments.mean;
+    turned.squares = vec3((tensor * rows[0]).x, (tensor * rows[1]).y, (tensor * rows[2]).z);
+    turned.products = vec3((tensor * rows[2]).y, (tensor * rows[0]).z, (tensor * rows[1]).x);
+    return turned;
+}
+
+// As NORMALS_HARMONIC_SUM, of moments in one frame with the light.
+#define NORMALS_MOMENTS_SUM(moments, bands, COEFFICIENT) \
+    ((bands).x * 0.28209479 * (moments).weight * COEFFICIENT(0) \
+        + (bands).y * 0.48860251 \
+            * (-(moments).mean.y * COEFFICIENT(1) + (moments).mean.z * COEFFICIENT(2) - (moments).mean.x * COEFFICIENT(3)) \
+        + (bands).z \
+            * (1.09254843 * ((moments).products.z * COEFFICIENT(4) - (moments).products.x * COEFFICIENT(5) \
+                   - (moments).products.y * COEFFICIENT(7)) \
+                + 0.31539157 * (2.0 * (moments).squares.z - (moments).squares.x - (moments).squares.y) * COEFFICIENT(6) \
+                + 0.54627421 * ((moments).squares.x - (moments).squares.y) * COEFFICIENT(8)))
+
 // What a lobe reflects of light all around, as an exponential about a direction.
 struct NormalsGloss {
     vec3 direction;

@@ -7,7 +7,7 @@ use airglow_gpu::{
     Binding, BindingDesc, BindingKind, BufferSlice, Context, GpuError, GraphicsPipeline, Recorder,
 };
 
-use super::draw::{self, Inputs};
+use super::surface::{self, Inputs};
 use super::{shaders, sky};
 
 /// Where the model is evaluated.
@@ -44,12 +44,12 @@ const VIEW: BindingDesc = BindingDesc::new(9, BindingKind::UniformBuffer);
 impl CompletePipelines {
     /// For targets of a float format.
     pub fn new(context: &Context, hdr: vk::Format, road: Road) -> Result<Self, GpuError> {
-        let bindings = [&draw::DRAW_BINDINGS[..], &[VIEW]].concat();
+        let bindings = [&surface::DRAW_BINDINGS[..], &[VIEW]].concat();
         let (inputs, fragment) = match road {
             Road::Pixels => (Inputs::Lit, shaders::complete_fragment(false)),
             Road::Vertices => (Inputs::LitVertices, shaders::complete_fragment(true)),
         };
-        let surface = |relight| draw::scene_pipeline(context, hdr, relight, inputs, &fragment, &bindings);
+        let surface = |relight| surface::scene_pipeline(context, hdr, relight, inputs, &fragment, &bindings);
         let bindings = [BindingDesc::new(0, BindingKind::UniformBuffer), VIEW];
         let name = "airlight behind the surfaces";
         let sky = sky::behind(context, hdr, name, &shaders::complete_sky(), &bindings, 0)?;

@@ -5,21 +5,21 @@ use std::sync::Arc;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, ColorAttachment, ComputePipeline, ComputePipelineDesc, Context,
-    DepthAttachment, DepthState, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Load, Record, Recorder,
-    Rendering, Resources, VertexAttribute, VertexBufferLayout,
+    Binding, BindingDesc, BindingKind, ColorAttachment, ComputePipeline, ComputePipelineDesc, Context,
+    DepthAttachment, GpuError, GraphicsPipeline, Load, Record, Recorder, Rendering, Resources,
 };
 use airglow_graph::{Access, Buffer, Graph, Handle, Image, ImageDesc, PassKind};
 use bytemuck::{Pod, Zeroable};
 
 #[cfg(feature = "fog")]
 use super::complete::Complete;
-use super::filter::MAPPED_BINDINGS;
+use super::filter::{MAPPED_BINDINGS, MappedFragments};
 use super::lights::LightsConstants;
-use super::scene::{DeviceScene, Draw, Look, MaterialConstants};
+use super::scene::{DeviceScene, Draw, Look, MapBindings};
 use super::shaders;
 use super::skin::Posed;
 use super::sky::{Behind, SkyPipelines};
+use super::surface::{DRAW_BINDINGS, Inputs, scene_pipeline};
 use super::view::SharedView;
 
 /// The format of depth.
@@ -32,20 +32,48 @@ pub struct Pipelines {
     /// The same two in fog.
     fogged: Option<[GraphicsPipeline; 2]>,
     /// The same two for surfaces with normal maps, by how they are looked up.
-    mapped: BTreeMap<Look, [GraphicsPipeline; 2]>,
+    mapped: BTreeMap<Look, MappedPipelines>,
     /// Behind the surfaces.
     pub sky: SkyPipelines,
     develop: ComputePipeline,
     hdr: vk::Format,
 }
 
-/// The colours of a scene's vertices: a buffer, and where those of each instance begin.
+/// The pipelines for surfaces whose maps are looked up in one way.
 #[derive(Clone)]
-pub struct VertexColours {
-    /// `[f32; 4]` a vertex.
+struct MappedPipelines {
+    lit: GraphicsPipeline,
+    ambient: GraphicsPipeline,
+    /// Lit by the radiance that meets the vertices, too.
+    incident: Option<GraphicsPipeline>,
+}
+
+/// What passes wrote for a scene's vertices: a buffer, and where that of each instance begins.
+#[derive(Clone)]
+pub struct VertexArray {
+    /// As many bytes a vertex as its kind takes.
     pub buffer: Handle<Buffer>,
-    /// First byte and size for each instance.
+    /// First byte and size for each instance; no bytes where there is nothing for it.
     pub ranges: Vec<(u64, u64)>,
+}
+
+/// The light of a scene's vertices.
+#[derive(Clone)]
+pub struct VertexLight {
+    /// What white diffuse surfaces send out, `[f32; 4]` a vertex.
+    pub colours: VertexArray,
+    /// Coefficients of what meets the vertices of surfaces with normal maps.
+    pub incident: Option<VertexArray>,
+}
+
+/// The part of an array that belongs to a draw.
+type Part = (Handle<Buffer>, u64, u64);
+
+impl VertexArray {
+    fn of(&self, instance: usize) -> Option<Part> {
+        let (offset, size) = *self.ranges.get(instance)?;
+        (size > 0).then_some((self.buffer, offset, size))
+    }
 }
 
 /// The scene's lights in a frame.
@@ -121,7 +149,7 @@ impl Pipelines {
         hdr: vk::Format,
         lights: bool,
         fogged: Option<&[u32]>,
-        mapped: &[(Look, Vec<u32>)],
+        mapped: &[MappedFragments],
     ) -> Result<Self, GpuError> {
         let fragment = shaders::scene_fragment(lights);
         let bindings = &DRAW_BINDINGS[..if lights { 4 } else { 3 }];
@@ -132,8 +160,15 @@ impl Pipelines {
         };
         let [lit, ambient] = both(plain, &fragment, bindings)?;
         let in_fog = |fragment| both(plain, fragment, &DRAW_BINDINGS);
-        let with_map = |(look, fragment): &(Look, Vec<u32>)| {
-            Ok::<_, GpuError>((*look, both(Inputs::Mapped, fragment, &MAPPED_BINDINGS)?))
+        let with_map = |fragments: &MappedFragments| {
+            let [lit, ambient] = both(Inputs::Mapped, &fragments.plain, &MAPPED_BINDINGS)?;
+            let incident = fragments.incident.as_ref().map(|(bytes, fragment)| {
+                scene_pipeline(context, hdr, true, Inputs::Incident(*bytes), fragment, &MAPPED_BINDINGS)
+            });
+            Ok::<_, GpuError>((
+                fragments.look,
+                MappedPipelines { lit, ambient, incident: incident.transpose()? },
+            ))
         };
         Ok(Self {
             lit,
@@ -162,7 +197,7 @@ impl Pipelines {
         graph: &mut Graph<Record>,
         scene: &Arc<DeviceScene>,
         view: &SharedView,
-        colours: Option<&VertexColours>,
+        colours: Option<&VertexLight>,
         lights: Option<&Lights>,
         behind: Option<&Behind>,
         posed: &[Posed],
@@ -170,8 +205,9 @@ impl Pipelines {
     ) -> Drawn {
         let mut pass = graph.pass("scene draw", PassKind::Graphics);
         posed.iter().for_each(|posed| posed.read(&mut pass));
-        if let Some(colours) = colours {
-            pass.read(&colours.buffer, Access::VertexBuffer);
+        let incident = colours.and_then(|light| light.incident.as_ref());
+        for array in colours.map(|light| &light.colours).into_iter().chain(incident) {
+            pass.read(&array.buffer, Access::VertexBuffer);
         }
         if let Some(behind) = behind {
             pass.read(&behind.environment, Access::FragmentSampled);
@@ -199,7 +235,7 @@ impl Pipelines {
         let mapped = if complete.is_some() { BTreeMap::new() } else { mapped };
         let glow = behind.and_then(|behind| behind.glow.clone());
         let (scene, view) = (Arc::clone(scene), view.clone());
-        let (colours, lights) = (colours.cloned(), lights.cloned());
+        let (colours, incident, lights) = (colours.cloned(), incident.cloned(), lights.cloned());
         pass.record(Box::new(move |recorder, resources| {
             let targets = [resources.view(&hdr)?, resources.view(&depth)?];
             recorder.begin_rendering(&Rendering {
@@ -212,7 +248,10 @@ impl Pipelines {
                 bound.push(Binding::uniform(3, &recorder.upload(&[*lights.constants])?));
             }
             // Normal maps are lit through the medium, but not by its glow.
-            let of_maps = bound.len();
+            let mut of_maps = bound.clone();
+            if lights.is_none() && !mapped.is_empty() {
+                of_maps.push(Binding::uniform(3, &recorder.upload(&[LightsConstants::NONE])?));
+            }
             if let Some(lobes) = &lobes {
                 bound.push(Binding::storage(4, resources.buffer(lobes)?));
             }
@@ -223,16 +262,39 @@ impl Pipelines {
                 bound.push(through);
             }
             for (instance, draw) in scene.draws.iter().enumerate() {
-                let colours = colours.as_ref().map(|colours| (colours, colours.ranges[instance]));
+                let colours = colours.as_ref().and_then(|light| light.colours.of(instance));
+                let incident = incident.as_ref().and_then(|array| array.of(instance));
                 let map = draw.mapped.as_ref().and_then(|map| Some((map, mapped.get(&map.look)?)));
-                let pipeline = match &map {
-                    Some((_, [lit, _])) if colours.is_some() => lit,
-                    Some((_, [_, ambient])) => ambient,
-                    None => &pipeline,
+                let Some((map, pipelines)) = map else {
+                    let normals = lights.is_some();
+                    record_draw(
+                        recorder,
+                        resources,
+                        &pipeline,
+                        draw,
+                        &bound,
+                        normals,
+                        None,
+                        [colours, None],
+                    )?;
+                    continue;
                 };
-                let map = map.map(|(map, _)| &map.bindings);
-                let bound = if map.is_some() { &bound[..of_maps] } else { &bound[..] };
-                record_draw(recorder, resources, pipeline, draw, bound, map, colours)?;
+                let (pipeline, incident) = match (&pipelines.incident, incident, colours) {
+                    (Some(pipeline), Some(incident), Some(_)) => (pipeline, Some(incident)),
+                    (_, _, Some(_)) => (&pipelines.lit, None),
+                    (_, _, None) => (&pipelines.ambient, None),
+                };
+                let arrays = [colours, incident];
+                record_draw(
+                    recorder,
+                    resources,
+                    pipeline,
+                    draw,
+                    &of_maps,
+                    true,
+                    Some(&map.bindings),
+                    arrays,
+                )?;
             }
             if let Some(environment) = &scene.environment {
                 sky.record(recorder, &view, environment, glow.as_ref())?;
@@ -303,8 +365,9 @@ fn record_draw(
     pipeline: &GraphicsPipeline,
     draw: &Draw,
     bound: &[Binding],
-    map: Option<&[Binding; 4]>,
-    colours: Option<(&VertexColours, (u64, u64))>,
+    normals: bool,
+    map: Option<&MapBindings>,
+    [colours, incident]: [Option<Part>; 2],
 ) -> Result<(), GpuError> {
     let mut bindings = bound.to_vec();
     bindings.extend(map.into_iter().flatten().cloned());
@@ -313,83 +376,19 @@ fn record_draw(
     recorder.push_constants(&draw.material)?;
     recorder.bind_vertex_buffer(0, &draw.mesh.positions)?;
     recorder.bind_vertex_buffer(1, &draw.mesh.texture_coordinates)?;
-    if let Some((colours, (offset, size))) = colours {
-        recorder.bind_vertex_buffer(2, resources.buffer(&colours.buffer)?.slice(offset, size)?)?;
+    if let Some((colours, offset, size)) = colours {
+        recorder.bind_vertex_buffer(2, resources.buffer(&colours)?.slice(offset, size)?)?;
     }
     let next = 2 + u32::from(colours.is_some());
-    if let Some(normals) = &draw.mesh.normals {
-        recorder.bind_vertex_buffer(next, normals)?;
+    if let (Some(array), true) = (&draw.mesh.normals, normals) {
+        recorder.bind_vertex_buffer(next, array)?;
     }
     if let (Some(tangents), Some(_)) = (&draw.mesh.tangents, map) {
         recorder.bind_vertex_buffer(next + 1, tangents)?;
     }
     recorder.bind_index_buffer(&draw.mesh.indices)?;
+    if let Some((incident, offset, size)) = incident {
+        recorder.bind_vertex_buffer(next + 2, resources.buffer(&incident)?.slice(offset, size)?)?;
+    }
     recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
-}
-
-/// The fourth is for the lights, where there are any, the last for their tables in fog.
-pub const DRAW_BINDINGS: [BindingDesc; 5] = [
-    BindingDesc::new(0, BindingKind::UniformBuffer),
-    BindingDesc::new(1, BindingKind::SampledImage),
-    BindingDesc::new(2, BindingKind::Sampler),
-    BindingDesc::new(3, BindingKind::UniformBuffer),
-    BindingDesc::new(4, BindingKind::StorageBuffer),
-];
-
-/// What the vertex stage hands on of a surface.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Inputs {
-    /// Texture coordinates and the light of the vertex.
-    Unlit,
-    /// Place and normal as well: the scene has lights.
-    Lit,
-    /// What lamps shine on the vertex, through a medium.
-    #[cfg(feature = "fog")]
-    LitVertices,
-    /// Tangent as well: the surface has a normal map.
-    Mapped,
-}
-
-/// The pipeline of a forward draw.
-pub fn scene_pipeline(
-    context: &Context,
-    hdr: vk::Format,
-    relight: bool,
-    inputs: Inputs,
-    fragment: &[u32],
-    bindings: &[BindingDesc],
-) -> Result<GraphicsPipeline, GpuError> {
-    let attribute = |location, format| VertexAttribute { location, format, offset: 0 };
-    let position = [attribute(0, vk::Format::R32G32B32_SFLOAT)];
-    let texture_coordinates = [attribute(1, vk::Format::R32G32_SFLOAT)];
-    let colour = [attribute(2, vk::Format::R32G32B32A32_SFLOAT)];
-    let layout =
-        |stride, attributes| VertexBufferLayout { stride, rate: vk::VertexInputRate::VERTEX, attributes };
-    let normal = [attribute(3, vk::Format::R32G32B32_SFLOAT)];
-    let mut buffers = vec![layout(12, &position[..]), layout(8, &texture_coordinates[..])];
-    buffers.extend(relight.then(|| layout(16, &colour[..])));
-    let tangent = [attribute(4, vk::Format::R32G32B32A32_SFLOAT)];
-    buffers.extend((inputs != Inputs::Unlit).then(|| layout(12, &normal[..])));
-    buffers.extend((inputs == Inputs::Mapped).then(|| layout(16, &tangent[..])));
-    let vertex = match inputs {
-        #[cfg(feature = "normals")]
-        Inputs::Mapped => shaders::mapped_vertex(relight),
-        #[cfg(feature = "fog")]
-        Inputs::LitVertices => shaders::complete_vertex(relight),
-        _ => shaders::scene_vertex(relight, inputs != Inputs::Unlit),
-    };
-    context.create_graphics_pipeline(&GraphicsPipelineDesc {
-        name: if relight { "scene, relit" } else { "scene, ambient" },
-        vertex: &vertex,
-        fragment: Some(fragment),
-        bindings,
-        push_constant_size: size_of::<MaterialConstants>() as u32,
-        vertex_buffers: &buffers,
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        cull: vk::CullModeFlags::NONE,
-        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-        depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: true }),
-        colors: &[hdr],
-        blend: Blend::None,
-    })
 }

@@ -3,6 +3,8 @@
 use airglow_gpu::{BindingDesc, BindingKind};
 use clap::ValueEnum;
 
+use super::scene::Look;
+
 /// How normal maps are filtered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Filter {
@@ -21,6 +23,17 @@ pub enum Filter {
     Mip,
     /// The map's own texels at every distance. With --samples and --passes this is the truth.
     Texels,
+}
+
+/// The fragment stages of surfaces with normal maps that are looked up in one way.
+#[cfg_attr(not(feature = "normals"), allow(dead_code, reason = "only the room of normal maps makes it"))]
+pub struct MappedFragments {
+    /// How.
+    pub look: Look,
+    /// Under the scene's lights, what the vertices bring being reflected as by a flat map.
+    pub plain: Vec<u32>,
+    /// With the incident radiance of the vertices, so many bytes each; `None` where no frame has it.
+    pub incident: Option<(u32, Vec<u32>)>,
 }
 
 /// For a surface with a normal map: the map, what is kept of its coarser levels, and how each is sampled.

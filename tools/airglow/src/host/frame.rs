@@ -6,7 +6,7 @@ use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
 use airglow_gpu::{Imports, Record, surface};
 use airglow_graph::{Access, Buffer, Graph, Handle, Image};
 
-use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexColours};
+use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexArray, VertexLight};
 #[cfg(feature = "fog")]
 use super::fog;
 use super::lighting::{Lighting, Reason, left_out, no_environment};
@@ -33,6 +33,9 @@ pub struct Declared {
 pub struct Turning {
     /// Rotations of the light; `None` where nothing is relit, and where near emitters light each vertex.
     pub rotations: Option<Rotations>,
+    /// The same of the radiance that meets surfaces with normal maps.
+    #[cfg(feature = "normals")]
+    pub incident: Option<Rotations>,
     /// The lights of the radiance pass, where there is one.
     #[cfg(feature = "radiance")]
     pub near: Option<airglow::radiance::Control>,
@@ -75,6 +78,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let (filter, mut rotations) = (filter(renderer, settings), None);
     #[cfg(feature = "radiance")]
     let mut near = None;
+    #[cfg(feature = "normals")]
+    let mut incident_rotations = None;
     let colours = match &mut renderer.lighting {
         Lighting::Relight(lit) if !settings.without_relight => {
             let light = match (environment, &renderer.environment) {
@@ -114,9 +119,23 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             if let (Some(rotations), Some(factors)) = (&relit.rotations, &filter) {
                 rotations.set_filter(factors).map_err(Failure::work)?;
             }
+            #[cfg(feature = "normals")]
+            let incident = match &mut lit.incident {
+                // What meets surfaces with normal maps, for the draw to reflect.
+                Some(incident) => {
+                    let filter = filter.as_deref();
+                    let (array, turned) =
+                        incident.add(context, &mut graph, &mut imports, &frame, &relit, filter)?;
+                    incident_rotations = turned;
+                    array
+                }
+                None => None,
+            };
+            #[cfg(not(feature = "normals"))]
+            let incident = None;
             rotations = relit.rotations;
             let ranges = relit.ranges.iter().map(|range| (range.offset, range.size)).collect();
-            relit.results.map(|buffer| VertexColours { buffer, ranges })
+            relit.results.map(|buffer| VertexLight { colours: VertexArray { buffer, ranges }, incident })
         }
         Lighting::Colours(truth) => {
             let why = "the vertices are lit by the ray-traced reference (--reference)";
@@ -124,7 +143,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             let state = Access::VertexBuffer;
             let handle = graph.import_buffer("reference colours", *truth.buffer.desc(), state, state);
             imports.buffer(&handle, &truth.buffer);
-            Some(VertexColours { buffer: handle, ranges: truth.ranges.clone() })
+            let colours = VertexArray { buffer: handle, ranges: truth.ranges.clone() };
+            Some(VertexLight { colours, incident: None })
         }
         Lighting::Even(Reason::NoEnvironment) => {
             graph.leave_out(no_environment(bytes, time));
@@ -206,6 +226,8 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         turning: Turning {
             rotations,
             #[cfg(feature = "radiance")]
+            #[cfg(feature = "normals")]
+            incident: incident_rotations,
             near,
             views,
             #[cfg(feature = "shadow")]

@@ -50,6 +50,9 @@ pub(super) struct Lit {
     /// The shadows of what moves, where something does.
     #[cfg(feature = "shadow")]
     pub(super) shadow: Option<super::shadow::SceneShadow>,
+    /// The radiance that meets surfaces with normal maps, where there are some.
+    #[cfg(feature = "normals")]
+    pub(super) incident: Option<super::incident::Incident>,
     /// The light of near emitters, where the scene has them.
     #[cfg(feature = "radiance")]
     pub(super) near: Option<super::near::NearLight>,
@@ -107,7 +110,7 @@ impl Source {
 }
 
 /// Whether a scene has light for the relight pass.
-fn is_lit(scene: &Scene) -> bool {
+pub(super) fn is_lit(scene: &Scene) -> bool {
     #[cfg(feature = "radiance")]
     let near = super::near::is_drawn(scene);
     #[cfg(not(feature = "radiance"))]
@@ -147,6 +150,8 @@ impl Lit {
             shadow: super::shadow::SceneShadow::new(device, scene, transfer)?,
             #[cfg(feature = "radiance")]
             near: super::near::NearLight::new(context, scene, transfer)?,
+            #[cfg(feature = "normals")]
+            incident: super::incident::Incident::new(context, scene, transfer)?,
         })
     }
 
@@ -176,7 +181,7 @@ impl HostColours {
 }
 
 /// The pass's settings for a scene.
-fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
+pub(super) fn relight_settings(scene: &Scene) -> airglow::relight::Settings {
     airglow::relight::Settings {
         order: scene.quality.order as usize,
         storage: match scene.quality.storage {

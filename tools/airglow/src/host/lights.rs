@@ -26,6 +26,18 @@ pub struct LightsConstants {
 }
 
 impl LightsConstants {
+    /// No light.
+    pub const NONE: Self = Self {
+        extinction: [0.0; 4],
+        scattering: [0.0; 4],
+        count: [0; 4],
+        lights: [LightConstants {
+            position_range: [0.0; 4],
+            intensity_scale: [0.0; 4],
+            axis_offset: [0.0; 4],
+        }; MAX_LIGHTS],
+    };
+
     /// Those of a scene; `None` where it has none.
     pub fn of_scene(scene: &Scene) -> Option<Self> {
         if scene.lights.is_empty() {

@@ -12,9 +12,10 @@ use airglow_math::Preset;
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
 use super::device::Device;
-use super::filter::Filter;
+use super::filter::{Filter, MappedFragments};
+use super::lighting::Source;
 use super::scene::{DeviceScene, Look, Mapped};
-use super::{scene, shaders, upload};
+use super::{incident, scene, shaders, upload};
 use crate::failure::{Failure, Outcome};
 
 /// Relative error that the lobes of a material may have.
@@ -31,10 +32,21 @@ pub struct MappedMaterials {
     materials: Vec<Option<Mapped>>,
 }
 
-/// Whether the normal map of a material is drawn: the scene's own lights shine on it.
+/// Whether the normal map of a material is drawn: the scene's own lights shine on it, or light from all around.
 pub fn is_drawn(scene: &Scene, material: &Material) -> bool {
-    let lit = !scene.lights.is_empty() && material.class != MaterialClass::Unlit;
-    lit && material.normal_texture.is_some()
+    let lit = !scene.lights.is_empty() || incident::is_drawn(scene);
+    lit && material.class != MaterialClass::Unlit && material.normal_texture.is_some()
+}
+
+/// The same of an instance: a mesh without texture coordinates has no tangents, and nothing to look its map up by.
+pub fn is_drawn_on(scene: &Scene, instance: usize) -> bool {
+    let instance = &scene.instances[instance];
+    is_drawn(scene, &scene.materials[instance.material]) && !scene.meshes[instance.mesh].tangents.is_empty()
+}
+
+/// Whether it reflects light from all around.
+pub fn gathers(scene: &Scene, instance: usize) -> bool {
+    incident::is_drawn(scene) && is_drawn_on(scene, instance)
 }
 
 /// What the device must offer for a scene.
@@ -46,12 +58,13 @@ pub fn requirements(scene: &Scene) -> Requirements {
 }
 
 impl MappedMaterials {
-    /// Filters the maps of a scene.
-    pub fn new(device: &Device<'_>, scene: &Scene, filter: Filter) -> Outcome<Self> {
+    /// Filters the maps of a scene that `source` lights.
+    pub fn new(device: &Device<'_>, scene: &Scene, source: &Source, filter: Filter) -> Outcome<Self> {
         let preset = scene.presets.of("normals");
         let mut maps = Self { filter, preset, left_out: Vec::new(), materials: Vec::new() };
+        let lit = !scene.lights.is_empty() || matches!(source, Source::Relight(_));
         for material in &scene.materials {
-            let mapped = match is_drawn(scene, material) {
+            let mapped = match lit && is_drawn(scene, material) {
                 true => maps.read(device, scene, material)?,
                 false => None,
             };
@@ -61,18 +74,28 @@ impl MappedMaterials {
     }
 
     /// Gives each draw the map of its material.
-    pub fn attach(&self, scene: &Scene, device_scene: &mut DeviceScene) {
-        for (draw, instance) in device_scene.draws.iter_mut().zip(&scene.instances) {
-            // A mesh without texture coordinates has no tangents, and nothing to look its map up by.
-            let tangents = draw.mesh.tangents.is_some();
-            draw.mapped = self.materials[instance.material].clone().filter(|_| tangents);
+    pub fn attach(&self, scene: &Scene, source: &Source, device_scene: &mut DeviceScene) {
+        for (number, (draw, instance)) in device_scene.draws.iter_mut().zip(&scene.instances).enumerate() {
+            let drawn = is_drawn_on(scene, number);
+            draw.mapped = self.materials[instance.material].clone().filter(|_| drawn);
+            if let Source::Relight(transfer) = source
+                && transfer.instances[number].in_world
+            {
+                draw.material.set_incident_in_world();
+            }
         }
     }
 
     /// The fragment stages that draw them, each by how it looks them up.
-    pub fn fragments(&self) -> Vec<(Look, Vec<u32>)> {
+    pub fn fragments(&self, scene: &Scene) -> Vec<MappedFragments> {
         let looks: BTreeSet<Look> = self.materials.iter().flatten().map(|mapped| mapped.look).collect();
-        looks.into_iter().map(|look| (look, shaders::mapped_fragment(self.filter, look))).collect()
+        let fragments = |look| MappedFragments {
+            look,
+            plain: shaders::mapped_fragment(self.filter, look),
+            incident: incident::is_drawn(scene)
+                .then(|| (incident::vertex_bytes(scene), shaders::incident_fragment(self.filter, look))),
+        };
+        looks.into_iter().map(fragments).collect()
     }
 
     fn read(&mut self, device: &Device<'_>, scene: &Scene, material: &Material) -> Outcome<Option<Mapped>> {

@@ -2,7 +2,7 @@
 //!
 //! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
 //! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws, `lights`, `fog`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near `emitters`;
+//! draws, `surface` their pipelines, `lights`, `fog`, `incident`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near `emitters`;
 //! `renderer` owns it all.
 //! `truth` computes on the CPU, by rays, what the pass approximates.
 
@@ -30,6 +30,8 @@ pub mod fog_sky;
 #[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
+#[cfg(all(feature = "normals", feature = "relight"))]
+pub mod incident;
 #[cfg(feature = "relight")]
 pub mod lighting;
 #[cfg(feature = "relight")]
@@ -61,6 +63,8 @@ pub mod spheres;
 pub mod strip;
 pub mod texture;
 pub mod transfer;
+#[cfg(feature = "relight")]
+pub mod surface;
 pub mod truth;
 pub mod unread;
 pub mod upload;

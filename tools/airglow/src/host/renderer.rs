@@ -165,11 +165,11 @@ impl<'d> Renderer<'d> {
         #[cfg(not(feature = "fog"))]
         let fogged: Option<Vec<u32>> = None;
         #[cfg(feature = "normals")]
-        let maps = MappedMaterials::new(device, scene, filter)?;
+        let maps = MappedMaterials::new(device, scene, source, filter)?;
         #[cfg(feature = "normals")]
-        maps.attach(scene, &mut device_scene);
+        maps.attach(scene, source, &mut device_scene);
         #[cfg(feature = "normals")]
-        let (mapped, about_maps) = (maps.fragments(), maps.left_out);
+        let (mapped, about_maps) = (maps.fragments(scene), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
         let skins = Skins::new(device, scene, &mut device_scene)?;
@@ -276,6 +276,10 @@ impl<'d> Renderer<'d> {
             }
             _ => Ok(()),
         }
+                #[cfg(feature = "normals")]
+                if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
+                    incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
+                }
     }
 
     /// The median device time of the relight pass in a frame, seconds.

@@ -62,18 +62,21 @@ pub enum Look {
 pub struct Mapped {
     /// How it is looked up.
     pub look: Look,
-    /// The map, what is kept of its coarser levels, and their samplers.
-    pub bindings: [Binding; 4],
+    /// As the draw takes it.
+    pub bindings: MapBindings,
 }
+
+/// A map, what is kept of its coarser levels, and their samplers.
+pub type MapBindings = [Binding; 4];
 
 /// The arrays of a mesh; instances share them.
 #[derive(Clone)]
 pub struct MeshBuffers {
     /// `[f32; 3]` a vertex.
     pub positions: Buffer,
-    /// `[f32; 3]` a vertex, where the scene has lights.
+    /// `[f32; 3]` a vertex, where the scene has lights or the surface a normal map that is drawn.
     pub normals: Option<Buffer>,
-    /// `[f32; 4]` a vertex, where the scene has lights and the mesh has them.
+    /// `[f32; 4]` a vertex, there too, if the mesh has them.
     pub tangents: Option<Buffer>,
     /// `[f32; 2]` a vertex.
     pub texture_coordinates: Buffer,
@@ -96,12 +99,18 @@ pub struct MaterialConstants {
     surface: u32,
 }
 
+/// Flags of a material, the bits of `host/material.glsl`.
+const UNLIT: u32 = 1;
+#[cfg(feature = "normals")]
+const INCIDENT_IN_WORLD: u32 = 2;
+const MATT: u32 = 4;
+
 /// Uploads the scene; the recorder's commands must be done before the first frame.
 pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene, GpuError> {
     let context = recorder.context();
-    let lit = !scene.lights.is_empty();
-    let meshes =
-        scene.meshes.iter().map(|mesh| upload_mesh(recorder, mesh, lit)).collect::<Result<Vec<_>, _>>()?;
+    let meshes = scene.meshes.iter().enumerate();
+    let meshes = meshes.map(|(index, mesh)| upload_mesh(recorder, mesh, has_normals(scene, index)));
+    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
     let white =
         upload::image(recorder, "white", COLOUR, &[(1, 1, vec![[255_u8; 4]])], Access::FragmentSampled)?;
     let images =
@@ -126,6 +135,16 @@ pub fn upload(recorder: &mut Recorder<'_>, scene: &Scene) -> Result<DeviceScene,
 }
 
 const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
+
+/// Whether draws of a mesh take its normals.
+fn has_normals(scene: &Scene, mesh: usize) -> bool {
+    #[cfg(all(feature = "normals", feature = "relight"))]
+    let mapped = (0..scene.instances.len())
+        .any(|number| scene.instances[number].mesh == mesh && super::mapped::is_drawn_on(scene, number));
+    #[cfg(not(all(feature = "normals", feature = "relight")))]
+    let (mapped, _) = (false, mesh);
+    !scene.lights.is_empty() || mapped
+}
 
 fn upload_mesh(recorder: &mut Recorder<'_>, mesh: &Mesh, lit: bool) -> Result<MeshBuffers, GpuError> {
     let normals = lit.then(|| upload::buffer(recorder, &mesh.name, &mesh.normals, Access::VertexBuffer));
@@ -189,7 +208,13 @@ impl MaterialConstants {
     /// Names the tables of the diffuse and of the specular lobe.
     #[cfg(feature = "fog")]
     pub fn set_tables(&mut self, [diffuse, specular]: [u32; 2]) {
-        self.flags = self.flags & 1 | (diffuse & 0xff) << 8 | specular << 16;
+        self.flags = self.flags & 0xff | (diffuse & 0xff) << 8 | specular << 16;
+    }
+
+    /// Says that the radiance that meets the vertices is told about the axes of the world.
+    #[cfg(feature = "normals")]
+    pub fn set_incident_in_world(&mut self) {
+        self.flags |= INCIDENT_IN_WORLD;
     }
 
     /// Puts what is drawn elsewhere.
@@ -211,7 +236,11 @@ impl MaterialConstants {
             emissive_cutoff: [red, green, blue, cutoff],
             uv_linear: [rows[0][0], rows[0][1], rows[1][0], rows[1][1]],
             uv_offset: [rows[0][2], rows[1][2]],
-            flags: u32::from(material.class == MaterialClass::Unlit),
+            flags: match material.class {
+                MaterialClass::Unlit => UNLIT,
+                MaterialClass::Lambert => MATT,
+                _ => 0,
+            },
             surface: [material.metallic, material.roughness]
                 .map(|value| u32::from(f16::from_f32(value).to_bits()))
                 .into_iter()

@@ -30,6 +30,39 @@ pub fn mapped_vertex(relight: bool) -> Vec<u32> {
     }
 }
 
+/// The same with the incident radiance of the vertices.
+#[cfg(feature = "normals")]
+pub fn incident_vertex() -> Vec<u32> {
+    module!("scene_vertex.AIRGLOW_RELIGHT.HOST_INCIDENT.HOST_LIGHTS.HOST_TANGENTS")
+}
+
+/// The fragment stage of the forward draw of surfaces with normal maps that light from all around reaches.
+#[cfg(feature = "normals")]
+pub fn incident_fragment(filter: Filter, look: Look) -> Vec<u32> {
+    match (filter, look) {
+        (_, Look::Harmonics) => module!("normals/", "scene.harmonics.HOST_INCIDENT"),
+        (Filter::Lobes, Look::Quarters) => module!("normals/", "scene_parts.HOST_INCIDENT"),
+        (Filter::Lobes, Look::Layers(1)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS1"),
+        (Filter::Lobes, Look::Layers(2)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS2"),
+        (Filter::Lobes, Look::Layers(4)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS4"),
+        (Filter::Lobes, _) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS6"),
+        (Filter::Octahedral, Look::Layers(1)) => {
+            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS1")
+        }
+        (Filter::Octahedral, Look::Layers(2)) => {
+            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS2")
+        }
+        (Filter::Octahedral, Look::Layers(6)) => {
+            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS6")
+        }
+        (Filter::Octahedral, _) => module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS4"),
+        (Filter::Toksvig, _) => module!("normals/", "scene.toksvig.HOST_INCIDENT"),
+        (Filter::Lean, _) => module!("normals/", "scene.lean.HOST_INCIDENT"),
+        (Filter::Mip | Filter::Harmonics, _) => module!("normals/", "scene.mip.HOST_INCIDENT"),
+        (Filter::Texels, _) => module!("normals/", "scene.texels.HOST_INCIDENT"),
+    }
+}
+
 /// The fragment stage of the forward draw of surfaces with normal maps.
 #[cfg(feature = "normals")]
 pub fn mapped_fragment(filter: Filter, look: Look) -> Vec<u32> {

@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use airglow_bake::cache::{CacheKey, Precision, Source, bake_cached};
-use airglow_bake::{LightFrame, Mesh, Occluder, Report, Settings, Threads, Transfer, unshadowed};
+use airglow_bake::{
+    BelowHorizon, LightFrame, Mesh, Occluder, Report, Settings, Threads, Transfer, unshadowed,
+};
 use airglow_scene::{Instance, Quality, Scene, Shadow};
 use glam::{DQuat, Mat4};
 use serde::Serialize;
@@ -101,8 +103,9 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
         spheres: super::spheres::of_scene(scene, cache, output)?,
         health: false,
     };
-    for job in &jobs {
-        let (transfer, account) = bake(job, quality, cache, output)?;
+    for (index, job) in jobs.iter().enumerate() {
+        let seen = is_seen(scene, &result.instances, index).then_some(BelowHorizon::Mean);
+        let (transfer, account) = bake(job, quality, seen, cache, output)?;
         result.transfers.push(transfer);
         result.accounts.push(account);
     }
@@ -244,14 +247,29 @@ fn world_job<'a>(
     Job { open, name, mesh, transform: scene.instances[instance].transform, occluders }
 }
 
-fn bake(job: &Job<'_>, quality: &Quality, cache: &Path, output: &Output) -> Outcome<(Transfer, Account)> {
+/// Whether the visibility of a transfer's vertices is asked for beside it: for the radiance that meets their normal maps.
+fn is_seen(scene: &Scene, instances: &[InstanceTransfer], transfer: usize) -> bool {
+    #[cfg(all(feature = "normals", feature = "relight"))]
+    let gathers = |number| super::mapped::gathers(scene, number);
+    #[cfg(not(all(feature = "normals", feature = "relight")))]
+    let gathers = |_| scene.instances.is_empty();
+    (0..instances.len()).any(|number| instances[number].transfer == transfer && gathers(number))
+}
+
+fn bake(
+    job: &Job<'_>,
+    quality: &Quality,
+    visibility: Option<BelowHorizon>,
+    cache: &Path,
+    output: &Output,
+) -> Outcome<(Transfer, Account)> {
     let mut account = job.account();
     let order = quality.order as usize;
     if job.open {
         let baked = unshadowed(&job.mesh, job.transform, order).map_err(Failure::input)?;
         return Ok((baked.transfer, account));
     }
-    let settings = Settings { order, rays: quality.rays, ..Settings::default() };
+    let settings = Settings { order, rays: quality.rays, visibility, ..Settings::default() };
     let key = CacheKey::new(&job.mesh, job.transform, &job.occluders, &settings).to_hex();
     std::fs::create_dir_all(cache).map_err(|error| Failure::file(cache, "making the cache folder", error))?;
     let file = cache.join(format!("{}-{}.safetensors", file_name(&job.name), &key[..16]));
