@@ -11,15 +11,19 @@ struct Triangle {
 };
 
 // A triangle as rays meet it: a ray r hits it where edge . r >= 0 for its three edges and plane . r > 0, which is then
-// |r| over the distance.
+// |r| over the distance. Edges are in units of their corners' lengths, so that rounding moves the products by less than
+// FACE_CLOSE.
 struct Seen {
     vec3 edges[3];
     vec3 plane;
+    float side; // 1 or -1: the turn of its corners
     uint name; // 1 and its place in the buffer
 };
 
 // Distances below a nanometre count as one, so that no sum overflows.
 #define MOST_NEARNESS 1e9
+// Products of edges below it are decided in higher precision.
+#define FACE_CLOSE 1e-6
 
 vec3 face_coordinates(uint face, vec3 v)
 {
@@ -52,7 +56,8 @@ vec3 face_edge(vec3 a, vec3 b)
     precise vec3 left = a.yzx * b.zxy;
     precise vec3 right = a.zxy * b.yzx;
     precise vec3 edge = left - right;
-    return edge;
+    vec3 one = vec3(1.0);
+    return edge / max(dot(abs(a), one) * dot(abs(b), one), 1e-37);
 }
 
 // Whether a triangle of these corners, in coordinates of the face, may be met by rays within low .. high.
@@ -82,7 +87,7 @@ Seen face_seen(vec3 a, vec3 b, vec3 c, uint name)
     float side;
     vec3 plane = face_plane(a, b, c, side);
     vec3 edges[3] = vec3[3](side * face_edge(b, c), side * face_edge(c, a), side * face_edge(a, b));
-    return Seen(edges, plane, name);
+    return Seen(edges, plane, side, name);
 }
 
 // What a ray through `at` of the face makes of an edge or a plane: the same bits wherever it is asked, so that triangles that
@@ -93,13 +98,10 @@ float face_product(vec3 edge, vec2 at)
     return product;
 }
 
-// The nearness at which a ray meets a triangle, 0 where it does not.
-float face_nearness(Seen seen, vec2 at)
+// The least product of a ray with an edge: 0 or more where it hits.
+float face_least(Seen seen, vec2 at)
 {
-    float least = min(face_product(seen.edges[0], at),
-        min(face_product(seen.edges[1], at), face_product(seen.edges[2], at)));
-    float nearness = face_product(seen.plane, at);
-    return least >= 0.0 && nearness > 0.0 ? nearness : 0.0;
+    return min(face_product(seen.edges[0], at), min(face_product(seen.edges[1], at), face_product(seen.edges[2], at)));
 }
 
 #endif

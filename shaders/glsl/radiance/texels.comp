@@ -111,7 +111,8 @@ void main()
     uint tile_count = wanted ? 6u * tiles * tiles : 0u;
     for (uint number = 0u; number < tile_count; ++number) {
         uvec2 corner = uvec2(number % tiles, number / tiles % tiles);
-        Tile tile = Tile(number / (tiles * tiles), float(TILE) * side * vec2(corner) - 1.0, side);
+        vec2 low = float(TILE) * side * vec2(corner) - 1.0;
+        Tile tile = Tile(number / (tiles * tiles), low, side, TILE * ivec2(corner), int(settings.size) * RAYS);
         bool met = tile_find(tile, point, settings.triangle_count);
         for (uint i = 0u; i < (met ? uint(TEXELS * TEXELS) : 0u); ++i) {
             ivec2 place = TEXELS * ivec2(lane % 8u, lane / 8u) + ivec2(i % uint(TEXELS), i / uint(TEXELS));

@@ -5,16 +5,21 @@
 // Data", 1980), each sample continued to first order (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for
 // Mid-Range Illumination", 2004).
 //
-// A workgroup has 64 vertices that are near one another. One walk of the tree finds the samples for all of them; each
-// vertex then takes from these a few coefficients at a time, which needs neither many registers nor long unrolled code.
+// A workgroup has 256 vertices that are near one another, an invocation four that are nearer still. One walk of the tree
+// finds the samples for all of them; an invocation keeps those that any of its four needs, and what it reads of a sample serves
+// all four: reading takes longer than adding. A few coefficients at a time need neither many registers nor long unrolled code.
 //
 // ORDER      3 to 6
 // GRADIENTS  0 or 1: samples are continued by their gradients
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "radiance/sample.glsl"
 #include "radiance/tree.glsl"
 
-layout(local_size_x = 64) in;
+#define LANES 64
+#define FOUR 4 // vertices of an invocation, and coefficients that it takes at a time
+layout(local_size_x = LANES) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Tree { Node nodes[]; } tree;
 layout(std430, set = 0, binding = 1) readonly buffer Slots { uint values[]; } slots;
@@ -52,8 +57,9 @@ layout(push_constant) uniform Settings {
 const uint LIST = 256u;
 shared vec4 domains[LIST]; // centre and radius
 shared uint sampled[LIST];
-// Of each vertex a bit for each listed sample whose domain holds it: neighbours take different samples at once.
-shared int held[LIST / 32u * 64u];
+// Of each invocation a bit for each listed sample whose domain may hold one of its vertices: neighbours take different
+// samples at once.
+shared int held[LIST / 32u * LANES];
 shared uint found;
 shared uint next; // node of the walk
 
@@ -89,98 +95,128 @@ void walk(vec4 ball)
 }
 
 // In units in which the largest domain is 1, so that no distance is too small for a float.
-float domain_weight(vec3 point, vec4 domain)
+float domain_weight(vec3 point, vec4 domain, float unit)
 {
     float away = distance(point, domain.xyz);
-    if (away > domain.w) { return 0.0; }
-    float near = max(away / settings.largest, 1e-6);
-    float edge = domain.w / settings.largest;
-    if (edge <= 1e-6) { return 1e12; } // a domain of one point: the vertex itself
+    float near = max(away * unit, 1e-6);
+    float edge = domain.w * unit;
     float weight = max((edge - near) / (edge * near), 0.0);
-    return weight * weight;
+    // A domain of one point: the vertex itself.
+    weight = edge > 1e-6 ? weight * weight : 1e12;
+    return away > domain.w ? 0.0 : weight;
 }
 
-// Finds which of the listed samples hold a vertex. The sum of their weights.
-float hold(vec3 point, uint local)
+// Finds which of the listed samples may hold a vertex of the invocation, by a ball about all four.
+void hold(vec3 points[FOUR], uint lane)
 {
-    float total = 0.0;
+    vec3 centre = 0.25 * (points[0] + points[1] + points[2] + points[3]);
+    float radius = 0.0;
+    [[unroll]] for (int v = 0; v < FOUR; ++v) { radius = max(radius, distance(points[v], centre)); }
+    radius += 1e-6 * (radius + length(centre));
     for (uint begin = 0u; begin < found; begin += 32u) {
         int bits = 0;
         for (uint k = begin; k < min(found, begin + 32u); ++k) {
-            float weight = domain_weight(point, domains[k]);
-            total += weight;
-            bits |= weight > 0.0 ? 1 << int(k - begin) : 0;
+            vec4 domain = domains[k];
+            bits |= distance(centre, domain.xyz) <= domain.w * 1.000001 + radius ? 1 << int(k - begin) : 0;
         }
-        held[begin / 32u * 64u + local] = bits;
+        held[begin / 32u * LANES + lane] = bits;
     }
-    return total;
 }
 
-// Adds to four coefficients from the first on what a listed sample says of them at a point.
-void add(inout vec3 sums[4], vec3 point, uint k, uint first)
+// Adds to four coefficients from the first on, of four vertices, what a listed sample says of them.
+void add(inout vec3 sums[FOUR * FOUR], inout float totals[FOUR], vec3 points[FOUR], uint k, uint first)
 {
     uint last = uint(COEFFICIENTS) - 1u;
     vec4 domain = domains[k];
-    float weight = domain_weight(point, domain);
     uint light = sampled[k] * uint(LIGHT_STRIDE);
+    float weights[FOUR];
+    float unit = 1.0 / settings.largest;
+    [[unroll]] for (int v = 0; v < FOUR; ++v) {
+        weights[v] = domain_weight(points[v], domain, unit);
+        totals[v] += first == 0u ? weights[v] : 0.0;
+    }
 #if GRADIENTS
-    vec4 extent = lights.values[light + uint(LIGHT_EXTENT)];
-    vec3 step_ = point - domain.xyz;
-    float far = length(step_);
-    // Without light the distance is infinite, and so are the steps allowed.
-    float most = extent.y > 0.0 ? settings.trust * (extent.x / extent.y) : far;
-    if (far > most) { step_ *= most / far; }
+    vec2 extent = lights.values[light + uint(LIGHT_EXTENT)].xy;
     uint slope = sampled[k] * uint(GRADIENT_STRIDE);
+    vec3 steps[FOUR];
+    [[unroll]] for (int v = 0; v < FOUR; ++v) {
+        vec3 way = points[v] - domain.xyz;
+        float far = length(way);
+        // Without light the distance is infinite, and so are the steps allowed.
+        float most = extent.y > 0.0 ? settings.trust * (extent.x / extent.y) : far;
+        steps[v] = weights[v] * (far > most ? most / far : 1.0) * way;
+    }
 #endif
-    for (uint j = 0u; j < 4u; ++j) {
-        uint i = min(first + j, last);
+    [[unroll]] for (int j = 0; j < FOUR; ++j) {
+        uint i = min(first + uint(j), last);
         vec3 value = lights.values[light + i].rgb;
 #if GRADIENTS
         uint at = slope + 3u * i;
-        value += gradients.values[at].rgb * step_.x + gradients.values[at + 1u].rgb * step_.y
-            + gradients.values[at + 2u].rgb * step_.z;
+        vec3 x = gradients.values[at].rgb;
+        vec3 y = gradients.values[at + 1u].rgb;
+        vec3 z = gradients.values[at + 2u].rgb;
 #endif
-        sums[j] += weight * value;
+        [[unroll]] for (int v = 0; v < FOUR; ++v) {
+            vec3 sum = weights[v] * value;
+#if GRADIENTS
+            sum += steps[v].x * x + steps[v].y * y + steps[v].z * z;
+#endif
+            sums[v * FOUR + j] += sum;
+        }
+    }
+}
+
+// Writes four coefficients of a vertex; those of a list before, if there was one, are there already.
+void write(vec3 sums[FOUR * FOUR], int v, uint light, uint first, float total, bool begun, bool more)
+{
+    for (uint j = 0u; j < uint(FOUR) && first + j < uint(COEFFICIENTS); ++j) {
+        uint at = light + 3u * (first + j);
+        vec3 sum = sums[uint(v * FOUR) + j];
+        if (begun) {
+            sum += vec3(vertex_light.values[at], vertex_light.values[at + 1u], vertex_light.values[at + 2u]);
+        }
+        if (!more) { sum = (total > 0.0 ? sum / total : vec3(0.0)) + distant.values[first + j].rgb; }
+        vertex_light.values[at] = sum.r;
+        vertex_light.values[at + 1u] = sum.g;
+        vertex_light.values[at + 2u] = sum.b;
     }
 }
 
 void main()
 {
-    uint local = gl_LocalInvocationID.x;
-    uint slot = gl_WorkGroupID.x * 64u + local;
-    bool mine = slot < settings.count;
-    Vertex vertex = vertices.values[settings.first + min(slot, settings.count - 1u)];
-    uint light = 3u * uint(COEFFICIENTS) * vertex.place;
-    if (local == 0u) { next = 0u; }
-    float total = 0.0;
+    uint lane = gl_LocalInvocationID.x;
+    uint begin = uint(FOUR) * (gl_WorkGroupID.x * uint(LANES) + lane);
+    vec3 points[FOUR];
+    uint written[FOUR];
+    float totals[FOUR];
+    [[unroll]] for (int v = 0; v < FOUR; ++v) {
+        Vertex vertex = vertices.values[settings.first + min(begin + uint(v), settings.count - 1u)];
+        points[v] = vertex.position;
+        written[v] = 3u * uint(COEFFICIENTS) * vertex.place;
+        totals[v] = 0.0;
+    }
+    if (lane == 0u) { next = 0u; }
     // Once, unless there are more samples than the list holds: then light is summed up where it is written.
     bool begun = false;
     bool more = true;
     while (more) {
         barrier();
-        if (local == 0u) { walk(groups.balls[settings.first_group + gl_WorkGroupID.x]); }
+        if (lane == 0u) { walk(groups.balls[settings.first_group + gl_WorkGroupID.x]); }
         barrier();
         more = next < settings.nodes;
-        total += hold(vertex.position, local);
-        for (uint first = 0u; first < uint(COEFFICIENTS) && mine; first += 4u) {
-            vec3 sums[4] = vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-            for (uint begin = 0u; begin < found; begin += 32u) {
-                for (int bits = held[begin / 32u * 64u + local]; bits != 0; bits &= bits - 1) {
-                    add(sums, vertex.position, begin + uint(findLSB(bits)), first);
+        hold(points, lane);
+        for (uint first = 0u; first < uint(COEFFICIENTS) && begin < settings.count; first += uint(FOUR)) {
+            vec3 sums[FOUR * FOUR];
+            [[unroll]] for (int i = 0; i < FOUR * FOUR; ++i) { sums[i] = vec3(0.0); }
+            for (uint from = 0u; from < found; from += 32u) {
+                for (int bits = held[from / 32u * LANES + lane]; bits != 0; bits &= bits - 1) {
+                    add(sums, totals, points, from + uint(findLSB(bits)), first);
                 }
             }
-            for (uint j = 0u; j < 4u; ++j) {
-                uint i = first + j;
-                if (i >= uint(COEFFICIENTS)) { continue; }
-                uint at = light + 3u * i;
-                vec3 sum = sums[j];
-                if (begun) {
-                    sum += vec3(vertex_light.values[at], vertex_light.values[at + 1u], vertex_light.values[at + 2u]);
+            [[unroll]] for (int v = 0; v < FOUR; ++v) {
+                if (begin + uint(v) < settings.count) {
+                    write(sums, v, written[v], first, totals[v], begun, more);
                 }
-                if (!more) { sum = (total > 0.0 ? sum / total : vec3(0.0)) + distant.values[i].rgb; }
-                vertex_light.values[at] = sum.r;
-                vertex_light.values[at + 1u] = sum.g;
-                vertex_light.values[at + 2u] = sum.b;
             }
         }
         begun = true;

@@ -7,6 +7,7 @@
 #ifndef RADIANCE_VISIBLE_GLSL
 #define RADIANCE_VISIBLE_GLSL
 
+#include "radiance/exact.glsl"
 #include "radiance/face.glsl"
 
 #define TILE (8 * BLOCK) // rays along a side
@@ -26,6 +27,8 @@ struct Tile {
     uint face;
     vec2 low;
     float side;
+    ivec2 first; // ray of the face
+    int rays; // along a side of the face
 };
 
 // Where a ray of the tile passes the face.
@@ -33,6 +36,27 @@ vec2 tile_at(Tile tile, ivec2 ray)
 {
     precise vec2 at = tile.low + tile.side * (vec2(ray) + 0.5);
     return at;
+}
+
+// Whether a ray that passes an edge within rounding hits: as the numbers of the buffers have it, not what is left of them.
+bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
+{
+    Triangle triangle = triangles[seen.name - 1u];
+    Corner corners[3];
+    for (int k = 0; k < 3; ++k) {
+        vec3 corner = triangle.corners[k].xyz;
+        for (int i = 0; i < 3; ++i) { corners[k].axes[i] = exact_sum(corner[i], -point[i]); }
+    }
+    // Whole numbers: rays lie at odd multiples of 1 / rays.
+    ivec2 odd = 2 * (tile.first + ray) + 1 - tile.rays;
+    vec3 way = face_world(tile.face, vec3(odd, tile.rays));
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+        float side = exact_side(way, corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        // Coordinates of a face mirror the world.
+        inside = inside && seen.side * side <= 0.0;
+    }
+    return inside;
 }
 
 // The rays that may meet a triangle of these corners, in coordinates of the face: from xy to zw.
@@ -53,11 +77,16 @@ ivec4 tile_span(Tile tile, vec3 a, vec3 b, vec3 c)
 
 // Casts a triangle through the rays of a span. First the nearest is found among all that are cast at once, then its name:
 // of names that are as near the last, for an order that no scheduling changes.
-void tile_cast(Tile tile, Seen seen, ivec4 span, uint count, bool named)
+void tile_cast(Tile tile, vec3 point, Seen seen, ivec4 span, uint count, bool named)
 {
     ivec2 ray = span.xy;
     for (uint i = 0u; i < count; ++i) {
-        uint nearness = floatBitsToUint(face_nearness(seen, tile_at(tile, ray)));
+        vec2 at = tile_at(tile, ray);
+        float least = face_least(seen, at);
+        bool hit = least >= 0.0;
+        // A loop, not a branch: software drivers run through a branch that nobody takes.
+        for (bool close = abs(least) < FACE_CLOSE; close; close = false) { hit = tile_decides(tile, point, seen, ray); }
+        uint nearness = hit ? floatBitsToUint(max(face_product(seen.plane, at), 0.0)) : 0u;
         int place = ray.y * TILE + ray.x;
         if (!named && nearness > 0u) { atomicMax(tile_nearness[place], nearness); }
         if (named && nearness > 0u && nearness == tile_nearness[place]) { atomicMax(tile_name[place], seen.name); }
@@ -89,15 +118,16 @@ uint tile_gather(Tile tile, vec3 point, uint first, uint triangle_count)
     barrier();
     if (many) { atomicOr(tile_mask[lane / 32u], 1u << (lane % 32u)); }
     if (rays > 0u) { tile_met = 1u; }
-    tile_cast(tile, seen, span, few, false);
-    barrier();
+    for (uint pass_ = 0u; pass_ < 2u; ++pass_) {
+        tile_cast(tile, point, seen, span, few, pass_ == 1u);
+        barrier();
+    }
     ivec2 mask = ivec2(tile_mask[0], tile_mask[1]); // signed as what bitCount returns: naga has no other
     if (many) {
         int below = int((1u << (lane % 32u)) - 1u);
         int place = lane < 32u ? bitCount(mask.x & below) : bitCount(mask.x) + bitCount(mask.y & below);
         tile_seen[place] = seen;
     }
-    tile_cast(tile, seen, span, few, true);
     barrier();
     return uint(bitCount(mask.x) + bitCount(mask.y));
 }
@@ -121,9 +151,21 @@ bool tile_find(Tile tile, vec3 point, uint triangle_count)
         uint count = tile_gather(tile, point, first, triangle_count);
         for (uint k = 0u; k < count; ++k) {
             Seen seen = tile_seen[k];
+            int hits = 0;
+            int close = 0;
             [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-                float near = face_nearness(seen, tile_at(tile, block + ivec2(i % BLOCK, i / BLOCK)));
-                bool nearer = near > nearness[i];
+                float least = face_least(seen, tile_at(tile, block + ivec2(i % BLOCK, i / BLOCK)));
+                hits |= least >= FACE_CLOSE ? 1 << i : 0;
+                close |= abs(least) < FACE_CLOSE ? 1 << i : 0;
+            }
+            for (; close != 0; close &= close - 1) {
+                int i = findLSB(close);
+                bool hit = tile_decides(tile, point, seen, block + ivec2(i % BLOCK, i / BLOCK));
+                hits |= hit ? 1 << i : 0;
+            }
+            [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
+                float near = face_product(seen.plane, tile_at(tile, block + ivec2(i % BLOCK, i / BLOCK)));
+                bool nearer = (hits & 1 << i) != 0 && near > nearness[i];
                 nearness[i] = nearer ? near : nearness[i];
                 names[i] = nearer ? seen.name : names[i];
             }

@@ -10,8 +10,10 @@ use bytemuck::{Pod, Zeroable};
 use super::{DeviceNode, LightShape, SampleBuffers};
 use crate::{OVERLAP, RadianceError, TRUST};
 
-/// Vertices of a workgroup.
-pub const GROUP: usize = 64;
+/// Vertices of a workgroup of [`module`].
+pub const GROUP: usize = 256;
+/// Vertices of a workgroup of [`turn_module`].
+const TURN_GROUP: u32 = 64;
 
 macro_rules! by_order {
     ($before:literal) => {
@@ -178,7 +180,7 @@ impl VertexKernels {
         let bound = [Binding::storage(0, rotation), Binding::storage(1, light.clone())];
         recorder.bind_compute(&self.turn, &bound)?;
         recorder.push_constants(&count)?;
-        recorder.dispatch([count.div_ceil(GROUP as u32), 1, 1])
+        recorder.dispatch([count.div_ceil(TURN_GROUP), 1, 1])
     }
 }
 
