@@ -146,6 +146,8 @@ impl<'d> Surface<'d> {
             let problem = "its images cannot be copied to; choose another device";
             return Err(GpuError::misuse("the window", problem));
         }
+        // For pictures of what is shown, where windows allow them.
+        let usage = usage | capabilities.supported_usage_flags & vk::ImageUsageFlags::TRANSFER_SRC;
         let [width, height] = chosen_extent(&capabilities, extent);
         if width == 0 || height == 0 {
             return self.replace(context, vk::SwapchainKHR::null(), Vec::new());
@@ -277,7 +279,7 @@ impl<'d> Surface<'d> {
 fn chosen_format(formats: &[vk::SurfaceFormatKHR]) -> Result<vk::SurfaceFormatKHR, GpuError> {
     use vk::Format;
     const WANTED: [Format; 4] =
-        [Format::B8G8R8A8_SRGB, Format::R8G8B8A8_SRGB, Format::B8G8R8A8_UNORM, Format::R8G8B8A8_UNORM];
+        [Format::B8G8R8A8_UNORM, Format::R8G8B8A8_UNORM, Format::B8G8R8A8_SRGB, Format::R8G8B8A8_SRGB];
     let offered = |format: &Format| {
         let srgb = vk::ColorSpaceKHR::SRGB_NONLINEAR;
         formats.iter().find(|offered| offered.format == *format && offered.color_space == srgb)

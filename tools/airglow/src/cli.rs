@@ -6,7 +6,9 @@ use clap::{Args, Parser, Subcommand};
 use crate::commands::maps;
 use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
-use crate::commands::{eval, explain, plan, render, report, show, stability};
+use crate::commands::{eval, explain, plan, render, report, stability};
+#[cfg(feature = "view")]
+use crate::commands::view;
 #[cfg(all(feature = "relight", feature = "shadow"))]
 use crate::commands::{film, spheres};
 
@@ -15,7 +17,7 @@ First steps:
   airglow devices                                 list the Vulkan devices of this machine
   airglow render assets/scenes/spot.toml -o spot.png
                                                   bake (once, then cached) and draw a scene
-  airglow show assets/scenes/spot.toml            the same, live in a window
+  airglow view assets/scenes/spot.toml            the same, live in a window
   airglow plan assets/scenes/spot.toml            show what a frame does, and what it leaves out
   airglow report relight -o out/report            measure the pass: error against time
 
@@ -64,8 +66,8 @@ pub enum Command {
     Bake(bake::Arguments),
     #[cfg(feature = "relight")]
     Render(render::Arguments),
-    #[cfg(feature = "relight")]
-    Show(show::Arguments),
+    #[cfg(feature = "view")]
+    View(view::Arguments),
     #[cfg(all(feature = "relight", feature = "shadow"))]
     Film(film::Arguments),
     #[cfg(all(feature = "relight", feature = "shadow"))]

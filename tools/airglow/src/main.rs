@@ -19,7 +19,7 @@ mod host;
 mod measure;
 mod output;
 mod report;
-#[cfg(feature = "relight")]
+#[cfg(feature = "view")]
 mod window;
 
 use std::process::ExitCode;

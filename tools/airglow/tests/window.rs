@@ -1,6 +1,6 @@
 //! The window as its users see it, on a virtual X11 display: its pixels, its size, its keys, its ends.
 
-#![cfg(all(feature = "relight", target_os = "linux"))]
+#![cfg(all(feature = "view", target_os = "linux"))]
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests stop at the first surprise")]
 
 use std::io::{BufRead, BufReader};
@@ -55,7 +55,7 @@ impl Drop for Display {
     }
 }
 
-/// A running `airglow show`, and its user.
+/// A running `airglow view`, and its user.
 struct User {
     process: Child,
     connection: RustConnection,
@@ -139,7 +139,7 @@ impl User {
 
 fn printed(output: &Output) -> serde_json::Value {
     let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "airglow show ended with {}: {errors}", output.status);
+    assert!(output.status.success(), "airglow view ended with {}: {errors}", output.status);
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -153,7 +153,14 @@ fn scene() -> PathBuf {
 
 fn show(display: &Display, folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));
-    command.arg("show").arg(scene()).args(COMMON).args(["--size", "320x240", "--spin", "0", "--validate"]);
+    command.arg("view").arg(scene()).args(COMMON).args([
+        "--size",
+        "320x240",
+        "--spin",
+        "0",
+        "--bare",
+        "--validate",
+    ]);
     command.args(more).current_dir(folder).env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY");
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
@@ -229,7 +236,7 @@ fn the_window_can_be_closed_and_closes_after_its_frames() {
     let shown = printed(&show(&display, here, &["--frames", "5"]).output().unwrap());
     assert_eq!(shown["frames"], 5, "{shown}");
     let passes: Vec<_> = shown["passes"].as_array().unwrap().iter().map(|pass| &pass["name"]).collect();
-    assert_eq!(passes.last(), Some(&&"show".into()), "{shown}");
+    assert_eq!(passes.last(), Some(&&"interface".into()), "{shown}");
 }
 
 #[test]
@@ -237,7 +244,7 @@ fn without_a_display_the_command_says_so_before_it_bakes() {
     let folder = tempfile::tempdir().unwrap();
     for display in [None, Some(":nowhere")] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));
-        command.arg("show").arg(scene()).current_dir(folder.path());
+        command.arg("view").arg(scene()).current_dir(folder.path());
         command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
         let output = command.envs(display.map(|display| ("DISPLAY", display))).output().unwrap();
         let errors = String::from_utf8_lossy(&output.stderr);

@@ -23,12 +23,12 @@ pub mod report;
 pub mod report_frame;
 pub mod requirements;
 pub mod scene;
-#[cfg(feature = "relight")]
-pub mod show;
 #[cfg(all(feature = "relight", feature = "shadow"))]
 pub mod spheres;
 #[cfg(feature = "relight")]
 pub mod stability;
+#[cfg(feature = "view")]
+pub mod view;
 #[cfg(feature = "relight")]
 pub mod what_if;
 
@@ -45,8 +45,8 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Bake(arguments) => bake::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Render(arguments) => render::run(&arguments, global, output),
-        #[cfg(feature = "relight")]
-        Command::Show(arguments) => show::run(&arguments, global, output),
+        #[cfg(feature = "view")]
+        Command::View(arguments) => view::run(&arguments, global, output),
         #[cfg(all(feature = "relight", feature = "shadow"))]
         Command::Film(arguments) => film::run(&arguments, global, output),
         #[cfg(all(feature = "relight", feature = "shadow"))]

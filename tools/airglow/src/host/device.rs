@@ -1,14 +1,16 @@
 //! The host's device: opened here, then handed to the library by the road that any engine takes.
 
+#[cfg(feature = "view")]
 use std::ffi::CStr;
 
 use airglow_gpu::ash::vk;
 use airglow_gpu::open::{
     DeviceKind, DeviceLine, FrameLoop, FrameSemaphores, OpenDevice, OpenOptions, Selector,
 };
+#[cfg(feature = "view")]
 use airglow_gpu::surface::{DEVICE_EXTENSIONS, Surface};
 use airglow_gpu::{Context, Execution, GpuError, Imports, Recorded, Recorder, Requirements, Timing};
-
+#[cfg(feature = "view")]
 use winit::raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
 use crate::cli::Global;
@@ -38,6 +40,7 @@ pub fn with<R>(
 }
 
 /// The same with a device that can show on windows, whose display needs these instance extensions.
+#[cfg(feature = "view")]
 pub fn with_window<R>(
     global: &Global,
     requirements: &Requirements,
@@ -133,6 +136,7 @@ impl Device<'_> {
     /// # Safety
     /// The handles are a live window's, which outlives the surface; the device was opened by [`with_window`] for its
     /// display.
+    #[cfg(feature = "view")]
     pub unsafe fn surface(
         &self,
         display: RawDisplayHandle,

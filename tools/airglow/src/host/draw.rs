@@ -349,14 +349,15 @@ impl Pipelines {
     }
 }
 
-/// Copies the developed picture, pixel for pixel, to an image of a window's.
-pub fn show(graph: &mut Graph<Record>, picture: Handle<Buffer>, window: Handle<Image>) {
+/// Copies the developed picture, pixel for pixel, to an image of a window's, which it returns.
+pub fn show(graph: &mut Graph<Record>, picture: Handle<Buffer>, window: Handle<Image>) -> Handle<Image> {
     let mut pass = graph.pass("show", PassKind::Transfer);
     pass.read(&picture, Access::TransferSource);
     let window = pass.write(window, Access::TransferDestination);
     pass.record(Box::new(move |recorder, resources| {
         recorder.copy_buffer_to_image(resources.buffer(&picture)?, &resources.view(&window)?)
     }));
+    window
 }
 
 fn record_draw(

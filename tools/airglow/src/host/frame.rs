@@ -213,10 +213,11 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         developed = pipelines.develop(&mut graph, hdr, developed, region, development);
     }
 
-    // A window shows a copy of it.
+    // A window shows a copy of it, and its own over that.
     let window = settings.window.map(|desc| {
         let image = graph.import_image("window", desc, surface::ACQUIRED, Access::Present);
-        draw::show(&mut graph, developed.display, image);
+        let shown = draw::show(&mut graph, developed.display, image);
+        renderer.over.iter().for_each(|over| over(&mut graph, shown));
         image
     });
 

@@ -43,6 +43,8 @@ pub mod moving;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod near;
 #[cfg(feature = "relight")]
+pub mod over;
+#[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;
 #[cfg(feature = "relight")]

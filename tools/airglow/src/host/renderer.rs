@@ -26,6 +26,7 @@ use super::lights::LightsConstants;
 use super::mapped::MappedMaterials;
 #[cfg(feature = "radiance")]
 use super::near::Arrival;
+use super::over::Over;
 use super::scene::{self, DeviceScene};
 pub use super::settings::{Air, Settings};
 use super::skin::Skins;
@@ -64,6 +65,8 @@ pub struct Renderer<'d> {
     pub(super) relight_seconds: Option<f64>,
     pub(super) linear: Buffer,
     pub(super) display: Buffer,
+    /// What a window has drawn over its picture.
+    pub(super) over: Option<Over>,
 }
 
 /// What a frame needs to know of the environment beside its image.
@@ -204,6 +207,7 @@ impl<'d> Renderer<'d> {
             relight_seconds: None,
             linear,
             display,
+            over: None,
         })
     }
 

@@ -158,6 +158,18 @@ pub fn skin() -> Vec<u32> {
     module!("skin")
 }
 
+/// The vertex stage of what a window draws over its picture.
+#[cfg(feature = "view")]
+pub fn interface_vertex() -> Vec<u32> {
+    module!("interface_vertex")
+}
+
+/// Its fragment stage.
+#[cfg(feature = "view")]
+pub fn interface_fragment() -> Vec<u32> {
+    module!("interface_fragment")
+}
+
 /// Samples to picture.
 pub fn develop() -> Vec<u32> {
     module!("develop")

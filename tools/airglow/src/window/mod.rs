@@ -1,11 +1,23 @@
-//! The window of `airglow show`: the frames of `host`, live, and what mouse and keys change in them.
+//! The window of `airglow view`: the frames of `host`, live, and what mouse, keys and a panel change in them.
 //!
-//! `controls` turns input into a camera, a turn of the light and an exposure; `surface` holds the window and its
-//! swapchain; `viewer` draws frame after frame.
+//! `viewer` draws frame after frame; `surface` holds the window and its swapchain; `controls` is what keys, mouse and
+//! panel change, `camera` where they bring the camera; `interface` and `paint` are egui in the window, `panel` and
+//! `graph` what it lays out, `times` what passes took; `shot` writes pictures of it all.
 
+mod camera;
 pub mod controls;
+mod graph;
+mod input;
+mod interface;
+mod paint;
+mod panel;
+mod shot;
+mod style;
 mod surface;
+mod times;
 pub mod viewer;
+
+pub use interface::Places;
 
 use std::ffi::CStr;
 

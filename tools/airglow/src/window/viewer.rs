@@ -1,35 +1,41 @@
 //! Frame after frame in a window: the same frame that `airglow render` draws, from one plan until something changes
 //! that is compiled into it.
 
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use airglow_gpu::TimingSummary;
 use airglow_gpu::open::FrameLoop;
 use airglow_gpu::surface::SurfaceFrame;
-use airglow_gpu::{Timing, TimingSummary};
 use airglow_graph::ImageDesc;
 use airglow_scene::Camera;
 use glam::Vec3;
 use winit::application::ApplicationHandler;
-use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
-use super::controls::{Action, Controls, Drag};
+use super::camera::Rig;
+use super::controls::{Action, Controls};
+use super::input::Input;
+use super::interface::{Interface, Places};
+use super::panel::{self, Told};
+use super::shot::{self, Shot};
 use super::surface::ShownWindow;
+use super::times::Times;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
 use crate::host::renderer::{Air, Compiled, Renderer, Settings};
 
-/// Frames that the times in the title are medians of.
+/// Frames that the times printed at the end are medians of.
 const TIMED_FRAMES: usize = 60;
-/// How often the title is written.
-const TITLE_EVERY: Duration = Duration::from_millis(500);
-/// Pixels of a touchpad's scrolling that count as a notch of a wheel.
-const PIXELS_A_NOTCH: f32 = 40.0;
+/// How often the rate of frames is told anew.
+const RATE_EVERY: Duration = Duration::from_millis(500);
 
 /// What is shown, and for how long.
 pub struct Show {
-    /// Begins the window's title.
+    /// The window's title.
     pub title: String,
     /// Where the camera starts, and the middle of the scene that it goes around.
     pub camera: Camera,
@@ -37,10 +43,16 @@ pub struct Show {
     pub center: Vec3,
     /// The first frame; its size is that of the window at first, its turn and exposure are where input starts.
     pub start: Settings,
-    /// Radians that the light turns in a second.
+    /// Degrees that the light turns in a second.
     pub spin: f64,
     /// Ends after so many frames.
     pub frames: Option<u32>,
+    /// Where pictures of the window go.
+    pub picture: PathBuf,
+    /// Whether the last frame is written there.
+    pub last_picture: bool,
+    /// Whether the panel is hidden at first.
+    pub bare: bool,
 }
 
 /// What was shown.
@@ -51,36 +63,40 @@ pub struct Shown {
     pub seconds: f64,
     /// Device times of the last of them; `None` with too few.
     pub timing: Option<TimingSummary>,
+    /// Where parts of the panel were.
+    pub places: Places,
 }
 
 /// Draws to a window and listens to it.
 pub struct Viewer<'d> {
     device: &'d Device<'d>,
+    name: String,
     renderer: Renderer<'d>,
     show: Show,
     settings: Settings,
     controls: Controls,
-    pointer: Pointer,
+    rig: Rig,
+    input: Input,
     frames: FrameLoop<'d>,
     compiled: Option<Compiled>,
+    /// Dropped before the window.
+    interface: Option<Interface>,
+    places: Places,
+    shot: Shot,
     window: Option<ShownWindow<'d>>,
     /// Whether the swapchain must be made again.
     stale: bool,
     /// Whether nothing of the window can be seen.
     hidden: bool,
+    times: Times,
     shown: u32,
     first: Option<Instant>,
     last: Option<Instant>,
-    /// When the title was written, and how many frames had been shown.
-    titled: Option<(Instant, u32)>,
+    /// When the rate was told, how many frames had been shown, and the rate.
+    told: Option<(Instant, u32, f64)>,
+    /// What happened last.
+    status: String,
     outcome: Outcome,
-}
-
-/// The mouse.
-#[derive(Default)]
-struct Pointer {
-    at: Option<[f32; 2]>,
-    drag: Option<Drag>,
 }
 
 impl<'d> Viewer<'d> {
@@ -88,20 +104,27 @@ impl<'d> Viewer<'d> {
     pub fn new(device: &'d Device<'d>, renderer: Renderer<'d>, show: Show) -> Outcome<Self> {
         Ok(Self {
             device,
+            name: device.machine().device,
             renderer,
             settings: show.start,
+            controls: Controls { bare: show.bare, ..Controls::new(show.spin) },
+            rig: Rig::new(show.camera.clone(), show.center),
             show,
-            controls: Controls::default(),
-            pointer: Pointer::default(),
+            input: Input::default(),
             frames: device.frame_loop()?,
             compiled: None,
+            interface: None,
+            places: Places::new(),
+            shot: Shot::default(),
             window: None,
             stale: false,
             hidden: false,
+            times: Times::default(),
             shown: 0,
             first: None,
             last: None,
-            titled: None,
+            told: None,
+            status: String::new(),
             outcome: Ok(()),
         })
     }
@@ -119,46 +142,73 @@ impl<'d> Viewer<'d> {
             }
             None => None,
         };
-        Ok(Shown { frames: self.shown, seconds, timing })
+        Ok(Shown { frames: self.shown, seconds, timing, places: self.places })
     }
 
     /// Draws and shows one frame, unless the window has no pixels or changed just now.
     fn draw(&mut self) -> Outcome {
         let Some((desc, frame)) = self.acquire()? else { return Ok(()) };
-        self.follow_controls();
+        self.advance();
+        self.lay_out(&desc)?;
+        let last = self.show.frames == Some(self.shown + 1) && self.show.last_picture;
+        let picture = (last || std::mem::take(&mut self.input.picture)) && self.can_copy(&desc);
+        self.prepare(&desc, picture)?;
+        self.submit(frame)?;
+        if picture {
+            self.write_picture(&desc)?;
+        }
+        self.shown += 1;
+        Ok(())
+    }
+
+    /// The plan of the next frame, a new one where something compiled into it has changed.
+    fn prepare(&mut self, desc: &ImageDesc, picture: bool) -> Outcome {
+        let (controls, start) = (&self.controls, &self.show.start);
         let settings = Settings {
             size: [desc.extent[0], desc.extent[1]],
-            exposure: self.show.start.exposure * self.controls.exposure(),
-            without_relight: self.controls.without_relight,
-            air: Air::with_fog(!self.controls.without_fog),
-            window: Some(desc),
-            ..self.show.start
+            exposure: start.exposure * controls.exposure(),
+            without_relight: !controls.passes.relight,
+            without_shadow: !controls.passes.shadow,
+            air: Air::with_fog(controls.passes.fog),
+            window: Some(*desc),
+            ..*start
         };
-        let compiled = match &mut self.compiled {
-            Some(compiled) if settings == self.settings => compiled,
-            outdated => {
-                if settings.size != self.settings.size {
-                    self.renderer.resize(settings.size)?;
-                }
-                self.settings = settings;
-                *outdated = None;
-                outdated.insert(self.renderer.compile(&settings, TIMED_FRAMES, false)?)
+        if picture || settings != self.settings {
+            self.compiled = None;
+        }
+        self.shot.ask(picture);
+        self.renderer.look(self.rig.camera());
+        if self.compiled.is_none() {
+            if settings.size != self.settings.size {
+                self.renderer.resize(settings.size)?;
             }
+            self.settings = settings;
+            self.compiled = Some(self.renderer.compile(&settings, TIMED_FRAMES, false)?);
+        }
+        if let Some(compiled) = &self.compiled {
+            let turn = self.controls.rotation() * settings.turn;
+            self.renderer.turn(&compiled.turning, &settings, turn)?;
+            let walked = self.first.map_or(0.0, |first| first.elapsed().as_secs_f64());
+            self.renderer.move_to(settings.time + walked)?;
+        }
+        Ok(())
+    }
+
+    /// Draws the frame and shows it.
+    fn submit(&mut self, frame: SurfaceFrame) -> Outcome {
+        let Some(Compiled { execution, imports, timing, turning }) = &mut self.compiled else {
+            return Ok(());
         };
-        let turn = self.controls.turn() * settings.turn;
-        self.renderer.turn(&compiled.turning, &settings, turn)?;
-        let walked = self.first.map_or(0.0, |first| first.elapsed().as_secs_f64());
-        self.renderer.move_to(settings.time + walked)?;
-        let Compiled { execution, imports, timing, turning } = compiled;
         if let Some(window) = &turning.window {
             imports.image(window, &frame.image);
         }
         self.device.frame(&mut self.frames, frame.semaphores, execution, imports, timing.as_mut())?;
+        if let Some(timing) = timing {
+            self.times.take(timing);
+        }
         if let Some(window) = &mut self.window {
             self.stale = !window.present(frame)?;
         }
-        self.shown += 1;
-        self.write_title();
         Ok(())
     }
 
@@ -174,71 +224,94 @@ impl<'d> Viewer<'d> {
     }
 
     /// Moves camera and light to where input and time have brought them.
-    fn follow_controls(&mut self) {
+    fn advance(&mut self) {
         let now = Instant::now();
         let passed = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
         self.first.get_or_insert(now);
         self.last = Some(now);
-        self.controls.advance(self.show.spin * passed);
-        self.renderer.look(self.controls.camera(&self.show.camera, self.show.center));
+        self.controls.advance(passed);
+        if let (Some(way), true) = (self.input.held.way(), self.controls.flies) {
+            self.rig.fly(way, self.input.held.fast, passed as f32);
+        }
+        let (since, before, rate) = *self.told.get_or_insert((now, self.shown, 0.0));
+        if now - since >= RATE_EVERY || rate == 0.0 && self.shown > before {
+            let rate = f64::from(self.shown - before) / (now - since).as_secs_f64();
+            self.told = Some((now, self.shown, rate));
+        }
     }
 
-    /// Frame rate, device times of the passes, and what is switched off, now and then.
-    fn write_title(&mut self) {
-        let now = Instant::now();
-        let (since, before) = *self.titled.get_or_insert((now, self.shown));
-        if now - since < TITLE_EVERY {
+    /// Lays out the panel, which may change what is drawn.
+    fn lay_out(&mut self, desc: &ImageDesc) -> Outcome {
+        let Some(window) = &self.window else { return Ok(()) };
+        let interface = match &mut self.interface {
+            Some(interface) => interface,
+            None => {
+                let interface = Interface::new(self.device, window.window(), desc.format)?;
+                let (painter, shot) = (interface.painter().clone(), self.shot.clone());
+                self.renderer.draw_over(Arc::new(move |graph, window| {
+                    let window = painter.add(graph, window);
+                    shot.add(graph, window);
+                }));
+                self.interface.insert(interface)
+            }
+        };
+        let plan = self.compiled.as_ref().map(|compiled| compiled.execution.plan());
+        let left_out = plan.map_or(Vec::new(), |plan| plan.left_out().to_vec());
+        let told = Told {
+            device: &self.name,
+            rate: self.told.map_or(0.0, |(.., rate)| rate),
+            size: [desc.extent[0], desc.extent[1]],
+            times: &self.times,
+            left_out: &left_out,
+            status: &self.status,
+        };
+        let (controls, places) = (&mut self.controls, &mut self.places);
+        let mut asked = panel::Asked::default();
+        interface.run(window.window(), |context| asked = panel::show(context, controls, &told, places));
+        self.input.picture |= asked.picture;
+        if asked.home {
+            self.act(Action::Home);
+        }
+        Ok(())
+    }
+
+    fn can_copy(&mut self, desc: &ImageDesc) -> bool {
+        let can = shot::can_copy(desc);
+        if !can {
+            self.status = "this window cannot be copied; use airglow render".to_owned();
+        }
+        can
+    }
+
+    fn write_picture(&mut self, desc: &ImageDesc) -> Outcome {
+        self.frames.finish().map_err(Failure::work)?;
+        self.shot.write(desc, &self.show.picture)?;
+        self.status = format!("{} written", self.show.picture.display());
+        self.compiled = None;
+        Ok(())
+    }
+
+    fn act(&mut self, action: Action) {
+        self.controls.act(action);
+        match action {
+            Action::Home => self.rig.reset(),
+            Action::Picture => self.input.picture = true,
+            _ => {}
+        }
+    }
+
+    fn input(&mut self, event_loop: &ActiveEventLoop, event: &WindowEvent) {
+        if let (Some(interface), Some(window)) = (&mut self.interface, &self.window)
+            && interface.takes(window.window(), event)
+        {
+            self.input.let_go();
             return;
         }
-        self.titled = Some((now, self.shown));
-        let rate = f64::from(self.shown - before) / (now - since).as_secs_f64();
-        let mut title = format!("{}: {rate:.1} frames/s", self.show.title);
-        let timing = self.compiled.as_ref().and_then(|compiled| compiled.timing.as_ref());
-        for pass in timing.and_then(Timing::summary).map_or(Vec::new(), |summary| summary.passes) {
-            title.push_str(&format!(", {} {:.2} ms", pass.name, 1e3 * pass.median));
-        }
-        if self.controls.paused {
-            title.push_str(", light stopped");
-        }
-        if self.controls.without_relight {
-            title.push_str(", without relight");
-        }
-        if self.controls.without_fog {
-            title.push_str(", without fog");
-        }
-        if let Some(window) = &self.window {
-            window.window().set_title(&title);
-        }
-    }
-
-    fn input(&mut self, event_loop: &ActiveEventLoop, event: WindowEvent) {
-        match event {
-            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
-                match Action::of(&event.logical_key) {
-                    Some(Action::Quit) => event_loop.exit(),
-                    Some(action) => self.controls.act(action),
-                    None => {}
-                }
-            }
-            WindowEvent::MouseInput { state, button, .. } => {
-                self.pointer.drag = match (state, button) {
-                    (ElementState::Pressed, MouseButton::Left) => Some(Drag::Camera),
-                    (ElementState::Pressed, MouseButton::Right) => Some(Drag::Light),
-                    _ => None,
-                };
-            }
-            WindowEvent::CursorMoved { position, .. } => {
-                let at = [position.x as f32, position.y as f32];
-                let before = self.pointer.at.replace(at);
-                if let (Some(drag), Some(before)) = (self.pointer.drag, before) {
-                    self.controls.drag(drag, [at[0] - before[0], at[1] - before[1]]);
-                }
-            }
-            WindowEvent::MouseWheel { delta, .. } => self.controls.zoom(match delta {
-                MouseScrollDelta::LineDelta(_, lines) => lines,
-                MouseScrollDelta::PixelDelta(pixels) => pixels.y as f32 / PIXELS_A_NOTCH,
-            }),
-            _ => {}
+        let height = self.settings.size[1] as f32;
+        match self.input.take(event, &mut self.controls, &mut self.rig, height) {
+            Some(Action::Quit) => event_loop.exit(),
+            Some(action) => self.act(action),
+            None => {}
         }
     }
 
@@ -272,8 +345,9 @@ impl ApplicationHandler for Viewer<'_> {
                     event_loop.exit();
                 }
             }
-            input => self.input(event_loop, input),
+            _ => {}
         }
+        self.input(event_loop, &event);
     }
 
     /// Draws without a pause while there is something to see; else waits for an event.

@@ -1,4 +1,6 @@
-//! `airglow show`: a scene, live, in a window.
+//! `airglow view`: a scene, live, in a window.
+
+use std::path::PathBuf;
 
 use clap::Args;
 use glam::{DQuat, Vec3};
@@ -16,7 +18,7 @@ use crate::output::Output;
 use crate::report::model::Machine;
 use crate::window::controls;
 use crate::window::viewer::{Show, Shown, Viewer};
-use crate::window::{event_loop, instance_extensions};
+use crate::window::{Places, event_loop, instance_extensions};
 
 /// Show a scene in a window: the frames of `airglow render`, live.
 ///
@@ -24,9 +26,9 @@ use crate::window::{event_loop, instance_extensions};
 /// light. The title tells frames a second and the device time of each pass.
 #[derive(Debug, Args)]
 #[command(after_help = format!("{}\n\nExamples:
-  airglow show assets/scenes/spot.toml
-  airglow show assets/scenes/demo.toml --size 1920x1080 --spin 0
-  airglow show assets/scenes/spot.toml --frames 300 --json", controls::HELP))]
+  airglow view assets/scenes/spot.toml
+  airglow view assets/scenes/demo.toml --size 1920x1080 --spin 0
+  airglow view assets/scenes/spot.toml --frames 300 --json", controls::HELP))]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneOptions,
@@ -48,6 +50,12 @@ pub struct Arguments {
     /// Factor from scene-linear values to the display to start with, instead of the scene file's.
     #[arg(long, value_name = "FACTOR")]
     exposure: Option<f32>,
+    /// Where `p` writes pictures of the window, view.png unless told otherwise. With --frames the last one is written, too.
+    #[arg(long, value_name = "FILE.png")]
+    picture: Option<PathBuf>,
+    /// Hide the panel at first; `h` brings it.
+    #[arg(long)]
+    bare: bool,
 }
 
 /// What was shown, as `--json` prints it.
@@ -58,6 +66,8 @@ struct Stat {
     frames_per_second: Option<f64>,
     /// Medians over the last frames.
     passes: Vec<PassStat>,
+    /// Where parts of the panel were in the window, pixels: left, top, right and bottom. For scripts that play a user.
+    panel: Places,
 }
 
 /// Runs the command.
@@ -72,12 +82,15 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let mut renderer = Renderer::new(device, &scene, &source, start.picture_size())?;
         start.exposure = renderer.exposure(arguments.exposure, scene.exposure, &start)?;
         let show = Show {
-            title: arguments.scene.scene.display().to_string(),
+            title: format!("{}, airglow", arguments.scene.scene.display()),
             camera: scene.camera(),
             center: scene.bounding_sphere().map_or(Vec3::ZERO, |sphere| sphere.center.into()),
             start,
-            spin: arguments.spin.to_radians(),
+            spin: arguments.spin,
             frames: arguments.frames,
+            picture: arguments.picture.clone().unwrap_or_else(|| PathBuf::from("view.png")),
+            last_picture: arguments.picture.is_some() && arguments.frames.is_some(),
+            bare: arguments.bare,
         };
         let mut viewer = Viewer::new(device, renderer, show)?;
         event_loop.run_app(&mut viewer).map_err(Failure::work)?;
@@ -105,12 +118,13 @@ fn settings(arguments: &Arguments) -> Settings {
 }
 
 fn stat(machine: Machine, shown: Shown) -> Stat {
-    let Shown { frames, seconds, timing } = shown;
+    let Shown { frames, seconds, timing, places } = shown;
     Stat {
         machine,
         frames,
         frames_per_second: (frames > 1).then(|| f64::from(frames - 1) / seconds),
         passes: timed(timing.as_ref()),
+        panel: places,
     }
 }
 
