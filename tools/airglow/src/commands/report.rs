@@ -35,6 +35,8 @@ use crate::report::write;
   airglow report normals -o out/normals
   airglow report shadow -o out/shadow
   airglow report presets -o out/presets           the presets of all passes
+  airglow report assets/scenes/demo.toml -o out/frame
+                                                  a whole frame: every pass by preset, and how time grows with size
   airglow report --merge docs/measured/relight-llvmpipe.json --merge out/report/report.json -o out/both
                                                   overlay devices: a kept run and one of your own")]
 pub struct Arguments {
@@ -48,13 +50,16 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
     #[arg(long, value_name = "FILE")]
-    environment: Option<PathBuf>,
+    pub(super) environment: Option<PathBuf>,
     /// Folder of the report.
     #[arg(long, short = 'o', value_name = "FOLDER")]
     pub(super) output: PathBuf,
     /// Fewer rays and rounds: enough to see the shape of the curves.
     #[arg(long)]
     pub(super) quick: bool,
+    /// Of a scene's frame measure sizes too that take minutes on a software driver, and passes on all of its vertices.
+    #[arg(long)]
+    pub(super) full: bool,
     /// Measure nothing; overlay these `report.json` files instead. May be given several times.
     #[arg(long, value_name = "FILE.json")]
     merge: Vec<PathBuf>,
@@ -154,17 +159,18 @@ impl Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let reports = if arguments.merge.is_empty() {
-        vec![match arguments.pass() {
-            _ if arguments.subject == Subject::Presets => report_frame::presets(arguments, global, output)?,
-            Pass::Relight => relight(arguments, global, output)?,
+        vec![match arguments.subject {
+            Subject::Presets => report_frame::presets(arguments, global, output)?,
+            Subject::Frame(ref scene) => report_frame::frame(scene, arguments, global, output)?,
+            Subject::Pass(Pass::Relight) => relight(arguments, global, output)?,
             #[cfg(feature = "fog")]
-            Pass::Fog => fog(arguments, global, output)?,
+            Subject::Pass(Pass::Fog) => fog(arguments, global, output)?,
             #[cfg(feature = "radiance")]
-            Pass::Radiance => radiance(arguments, global, output)?,
+            Subject::Pass(Pass::Radiance) => radiance(arguments, global, output)?,
             #[cfg(feature = "normals")]
-            Pass::Normals => normals(arguments, global, output)?,
+            Subject::Pass(Pass::Normals) => normals(arguments, global, output)?,
             #[cfg(feature = "shadow")]
-            Pass::Shadow => shadow(arguments, global, output)?,
+            Subject::Pass(Pass::Shadow) => shadow(arguments, global, output)?,
         }]
     } else {
         let read = arguments.merge.iter().map(|path| write::read(path)).collect::<Outcome<Vec<_>>>()?;
@@ -193,6 +199,7 @@ fn shadow(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Re
             remarks: measured.remarks,
             curves: measured.curves,
             numbers: measured.numbers,
+            frame: None,
         })
     })
 }
@@ -214,6 +221,7 @@ fn fog(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Repor
             remarks: measured.remarks,
             curves: measured.curves,
             numbers: measured.numbers,
+            frame: None,
         })
     })
 }
@@ -239,6 +247,7 @@ fn normals(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<R
             remarks: measured.remarks,
             curves: measured.curves,
             numbers: measured.numbers,
+            frame: None,
         })
     })
 }
@@ -263,6 +272,7 @@ fn radiance(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<
             remarks: measurement.remarks(),
             curves,
             numbers,
+            frame: None,
         })
     })
 }
@@ -292,6 +302,7 @@ fn relight(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<R
             remarks: remarks(&effort, &workload),
             curves,
             numbers: Vec::new(),
+            frame: None,
         })
     })
 }

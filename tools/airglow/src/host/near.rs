@@ -217,6 +217,13 @@ impl NearLight {
 }
 
 impl Renderer<'_> {
+    /// Has the next frame take all samples of near emitters anew, as if they had moved.
+    pub fn forget_samples(&self) {
+        if let Lighting::Relight(lit) = &self.lighting {
+            lit.near.iter().for_each(|near| near.receiver.forget_samples());
+        }
+    }
+
     /// What the radiance pass sampled in the last frame drawn, where there is the pass.
     pub fn near_stat(&self, settings: &FrameSettings) -> Outcome<Option<NearStat>> {
         match &self.lighting {

@@ -73,7 +73,6 @@ impl Air {
 
 impl Settings {
     /// A frame of that size with all passes, one view and one sample a pixel, at the scene's time 0.
-    #[cfg(feature = "shadow")]
     pub fn plain(size: [u32; 2]) -> Self {
         Self {
             size,

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::frame;
 use super::model::{Curve, Distribution, Errors, Number, Point, Report};
 use super::plot::{self, Cost};
 use super::ranking;
@@ -24,6 +25,9 @@ pub fn page(reports: &[Report]) -> Outcome<String> {
     );
     for report in reports {
         header(&mut html, report);
+        if let Some(frame) = &report.frame {
+            frame::page::section(&mut html, frame)?;
+        }
     }
     let mut knobs: Vec<&str> = Vec::new();
     for curve in reports.iter().flat_map(|report| &report.curves) {

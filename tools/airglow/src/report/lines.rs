@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::plot::{COLOURS, axes, range};
+use super::plot::{self, COLOURS, axes, range};
 use crate::failure::{Failure, Outcome};
 
 const SIZE: (u32, u32) = (720, 400);
@@ -40,18 +40,9 @@ fn draw(
             0 => (RGBColor(190, 190, 190), 7),
             _ => (COLOURS[(index - 1) % COLOURS.len()], 2),
         };
-        chart
-            .draw_series(LineSeries::new(line.points.iter().copied(), colour.stroke_width(width)))?
-            .label(line.name.as_str())
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(width)));
+        plot::line(&mut chart, &line.name, line.points.iter().copied(), colour, width)?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 13))
-        .draw()?;
+    plot::legend(&mut chart)?;
     area.present()?;
     Ok(())
 }

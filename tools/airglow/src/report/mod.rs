@@ -3,10 +3,10 @@
 pub mod date;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
+pub mod frame;
 pub mod html;
 pub mod interleave;
 pub mod labels;
-#[cfg(all(feature = "normals", feature = "relight"))]
 pub mod lines;
 pub mod model;
 #[cfg(all(feature = "normals", feature = "relight"))]

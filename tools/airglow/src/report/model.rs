@@ -3,6 +3,8 @@
 use airglow_math::statistics;
 use serde::{Deserialize, Serialize};
 
+use super::frame::FrameReport;
+
 /// One run of measurements of one pass on one device.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
@@ -23,6 +25,9 @@ pub struct Report {
     /// What the pass is held to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub numbers: Vec<Number>,
+    /// A whole frame of all passes, where that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<FrameReport>,
 }
 
 /// A number that a pass is held to.
@@ -290,6 +295,7 @@ pub mod testing {
             remarks: Vec::new(),
             curves: vec![curve],
             numbers: Vec::new(),
+            frame: None,
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Plots as SVG text that is pasted into the page: error against time, and error against memory, both
 //! logarithmic; the Pareto front joined by a line, the chosen point ringed.
 
-use plotters::coord::Shift;
 use plotters::coord::combinators::WithKeyPoints;
+use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 
 use super::labels::Labels;
@@ -150,10 +150,7 @@ fn draw(
         let colour = COLOURS[index % COLOURS.len()];
         let pairs: Vec<(f64, f64)> = dots.iter().map(|dot| (dot.cost, dot.error)).collect();
         let front: Vec<(f64, f64)> = pareto::front(&pairs).into_iter().map(|i| pairs[i]).collect();
-        chart
-            .draw_series(LineSeries::new(front, colour.stroke_width(2)))?
-            .label(device.as_str())
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        line(&mut chart, device, front, colour, 2)?;
         let bars = dots.iter().filter_map(|dot| dot.spread.map(|spread| (dot, spread)));
         chart.draw_series(bars.map(|(dot, (p5, p95))| {
             PathElement::new([(p5, dot.error), (p95, dot.error)], colour.mix(0.5).stroke_width(1))
@@ -171,6 +168,30 @@ fn draw(
                 + Text::new(dot.setting.clone(), offset, ("sans-serif", 13)),
         ))?;
     }
+    legend(&mut chart)?;
+    area.present()?;
+    Ok(())
+}
+
+/// A line that the legend names.
+pub(super) fn line<'a, C: CoordTranslate<From = (f64, f64)>>(
+    chart: &mut ChartContext<'a, SVGBackend<'_>, C>,
+    name: &str,
+    points: impl IntoIterator<Item = (f64, f64)>,
+    colour: RGBColor,
+    width: u32,
+) -> Result<(), Box<dyn std::error::Error>> {
+    chart
+        .draw_series(LineSeries::new(points, colour.stroke_width(width)))?
+        .label(name)
+        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(width)));
+    Ok(())
+}
+
+/// The names of all lines, in the upper right.
+pub(super) fn legend<'a, 'b: 'a, C: CoordTranslate>(
+    chart: &mut ChartContext<'a, SVGBackend<'b>, C>,
+) -> Result<(), Box<dyn std::error::Error>> {
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperRight)
@@ -178,7 +199,6 @@ fn draw(
         .border_style(RGBColor(200, 200, 200))
         .label_font(("sans-serif", 13))
         .draw()?;
-    area.present()?;
     Ok(())
 }
 

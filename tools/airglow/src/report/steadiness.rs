@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::plot::COLOURS;
+use super::plot::{self, COLOURS};
 use crate::failure::{Failure, Outcome};
 
 const SIZE: (u32, u32) = (720, 360);
@@ -41,18 +41,9 @@ fn draw(svg: &mut String, first: &[f64], second: &[f64]) -> Result<(), Box<dyn s
     for (index, (name, start, values)) in lines.into_iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
         let points = values.iter().enumerate().map(|(at, value)| ((at + start) as f64, *value));
-        chart
-            .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        plot::line(&mut chart, name, points, colour, 2)?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 13))
-        .draw()?;
+    plot::legend(&mut chart)?;
     area.present()?;
     Ok(())
 }

@@ -8,6 +8,7 @@ mod pass;
 mod picture;
 mod presets;
 mod random;
+mod scaling;
 mod table_sizes;
 
 use airglow_scene::Scene;

@@ -5,6 +5,7 @@ mod numbers;
 mod presets;
 mod race;
 mod rivals;
+pub mod scaling;
 mod truth;
 mod workload;
 

@@ -197,7 +197,7 @@ impl Measurement<'_> {
     }
 }
 
-fn point(timed: Timed, error: Errors) -> Point {
+pub(super) fn point(timed: Timed, error: Errors) -> Point {
     Point {
         setting: timed.name,
         milliseconds: timed.milliseconds,

@@ -7,6 +7,7 @@ pub mod errors;
 mod presets;
 mod rays;
 pub mod rivals;
+pub mod scaling;
 pub mod subset;
 pub mod truth;
 pub mod workload;

@@ -61,7 +61,7 @@ fn rivals(order: usize) -> Vec<Rival> {
     rivals
 }
 
-fn plain(order: usize, exponential: Exponential) -> Settings {
+pub(super) fn plain(order: usize, exponential: Exponential) -> Settings {
     Settings { order, exponential, reach: 0.0, clamp: false, ..Settings::default() }
 }
 
@@ -70,7 +70,7 @@ fn products(order: usize, name: String) -> Rival {
 }
 
 /// A square of ground of 4 m about the origin.
-fn ground(side: usize) -> Vec<[f32; 3]> {
+pub(super) fn ground(side: usize) -> Vec<[f32; 3]> {
     let place = |at: usize| 4.0 * at as f32 / side as f32 - 2.0;
     (0..side * side).map(|at| [place(at % side), 0.0, place(at / side)]).collect()
 }
@@ -204,7 +204,7 @@ fn crowds(measurement: &Measurement<'_>, ground: &[[f32; 3]], order: usize) -> O
 }
 
 /// A column of random spheres as tall as a person.
-fn crowd(count: usize) -> Vec<Sphere> {
+pub(super) fn crowd(count: usize) -> Vec<Sphere> {
     let mut random = Random::new(count as u32);
     let sphere = |_| {
         let around = random.direction();

@@ -5,6 +5,7 @@ mod knobs;
 mod methods;
 mod numbers;
 mod presets;
+mod scaling;
 mod shading;
 
 use airglow::shadow::bench::{Bench, SphereKernel};
