@@ -65,6 +65,34 @@ pub fn shuffle<R: Room>(
     .len()
 }
 
+/// Runs a room by both roads on a device whose memory the CPU cannot map, and returns the [`Outputs`].
+///
+/// # Panics
+/// On an error of [`stage_on`], and if validation says anything.
+pub fn stage<R: Room>(make: impl Fn(&Context) -> Result<R, Refusal>, requirements: &Requirements) -> Outputs {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { stage_on(host, requirements, |context, _| make(context)) }
+    })
+}
+
+/// Has pipelines made on a thread of their own, then holds that rooms made of them make no other; returns how many there
+/// are, which is `count`.
+///
+/// # Panics
+/// On an error of [`prepare_on`], and if validation says anything.
+pub fn prepare<P: Send, E: std::error::Error + Send + 'static, R: Room>(
+    requirements: &Requirements,
+    prepare: impl Fn(&Context) -> Result<P, E> + Sync,
+    count: usize,
+    makes: &[MakePrepared<'_, P, R>],
+) -> u64 {
+    on_own_device(requirements, |host| {
+        // SAFETY: the device was just made, as stated, and is no one else's.
+        unsafe { prepare_on(host, requirements, prepare, count, makes) }
+    })
+}
+
 /// Changes a room with every frame, in the order of `makes`, on a device of its own, and waits for none of them.
 ///
 /// # Panics

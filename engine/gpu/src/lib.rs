@@ -54,7 +54,8 @@ pub use options::{DeviceMask, Options};
 pub use patch::{FeatureStorage, patch_features};
 pub use pipeline::{
     BindingDesc, BindingKind, Blend, ComputePipeline, ComputePipelineDesc, DepthState, GraphicsPipeline,
-    GraphicsPipelineDesc, MAX_BINDINGS, VertexAttribute, VertexBufferLayout,
+    GraphicsPipelineDesc, Kernel, MAX_BINDINGS, Outside, Permutations, Pipelines, Stages, VertexAttribute,
+    VertexBufferLayout, words,
 };
 pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};

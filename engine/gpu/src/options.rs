@@ -22,7 +22,8 @@ pub struct Options {
 /// A lesser device than the one there is, so that paths for it can be tested on any machine.
 ///
 /// The mask applies after the device was found to meet the requirements: limits below them are for tests of chunking.
-/// There is no mask for memory that the CPU cannot map: device memory is never mapped, uploads always go through a copy.
+/// Memory that the CPU cannot map needs no mask: device memory is never mapped, what goes there goes by a copy. The
+/// conformance kit tells a device's memory so (`stage_on`), and holds rooms to the same bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DeviceMask {
     /// Limits and what they are lowered to; values above the device's own change nothing.

@@ -5,7 +5,7 @@ use crate::error::GpuError;
 use crate::execute::Record;
 use crate::health::Health;
 use crate::memory::{Buffer, BufferSlice};
-use crate::pipeline::{BindingDesc, BindingKind, ComputePipeline, ComputePipelineDesc};
+use crate::pipeline::{BindingDesc, BindingKind, ComputePipeline, ComputePipelineDesc, words};
 use crate::recorder::{Binding, Recorder};
 use crate::requirements::Requirements;
 use crate::resources::Imports;
@@ -99,11 +99,9 @@ impl Tally {
     /// [`GpuError::Vulkan`] when the device refuses.
     pub fn new(context: &Context, health: &Health) -> Result<Self, GpuError> {
         let bytes = include_bytes!("../../../shaders/spirv/health/tally.spv");
-        let word = |word: &[u8]| u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
-        let spirv: Vec<u32> = bytes.chunks_exact(4).map(word).collect();
         let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
             name: "health tally",
-            spirv: &spirv,
+            spirv: &words(bytes),
             bindings: &TALLY_BINDINGS,
             push_constant_size: size_of::<Constants>() as u32,
         })?;

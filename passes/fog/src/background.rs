@@ -6,15 +6,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use airglow_gpu::ash::vk::{self, BufferUsageFlags, ImageLayout};
 use airglow_gpu::requirements::FormatNeed;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Blend, Buffer, ColorAttachment, ComputePipeline, ComputePipelineDesc,
-    Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, Image, ImageView, Imports, Label, Load,
-    Location, Record, Recorder, Rendering, Requirements,
+    Binding, BindingDesc, BindingKind, Buffer, ColorAttachment, ComputePipeline, Context, GpuError,
+    GraphicsPipeline, Image, ImageView, Imports, Label, Load, Location, Record, Recorder, Rendering,
+    Requirements,
 };
 use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::distant::Distant;
+use crate::envelope::{Envelope, Part, Pipelines};
 use crate::error::check;
 use crate::{FogError, kernels};
 
@@ -39,7 +40,7 @@ pub struct Background {
 /// Push constants of `background_parts.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct LevelConstants {
+pub(crate) struct LevelConstants {
     size: [u32; 2],
     level: u32,
     first: u32,
@@ -49,7 +50,7 @@ struct LevelConstants {
 /// Push constants of `background.frag`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct GatherConstants {
+pub(crate) struct GatherConstants {
     optical: [f32; 4],
     albedo: [f32; 4],
     size: [u32; 2],
@@ -95,6 +96,21 @@ impl Background {
     /// # Errors
     /// [`FogError::Range`] for a side of 0 or above the device's limit, [`FogError::Gpu`] when the device refuses.
     pub fn new(context: &Context, size: [u32; 2], format: vk::Format) -> Result<Self, FogError> {
+        let own = Pipelines::prepare(context, Envelope::of_backgrounds(format))?;
+        Self::with_pipelines(context, size, format, &own)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`FogError::Envelope`] where the envelope has not got it; else as [`Background::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        size: [u32; 2],
+        format: vk::Format,
+        pipelines: &Pipelines,
+    ) -> Result<Self, FogError> {
+        pipelines.envelope().check_part(Part::Background(format))?;
         let most = context.limits().max_image_dimension2_d;
         for side in size {
             let sound = (1..=most).contains(&side);
@@ -103,26 +119,8 @@ impl Background {
         let count: u64 = (1..=levels(size)).map(|level| parts(size, level)).sum();
         let desc = BufferDesc { size: 32 * count.max(1), usage: BufferUsageFlags::STORAGE_BUFFER };
         let label = Label::new("fog", "fog background parts");
-        let reduce = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "fog background parts",
-            spirv: &kernels::background_parts(),
-            bindings: &BACKGROUND_BINDINGS,
-            push_constant_size: size_of::<LevelConstants>() as u32,
-        })?;
-        let gather = context.create_graphics_pipeline(&GraphicsPipelineDesc {
-            name: "fog background",
-            vertex: &kernels::rectangle(),
-            fragment: Some(&kernels::background()),
-            bindings: &BACKGROUND_BINDINGS,
-            push_constant_size: size_of::<GatherConstants>() as u32,
-            vertex_buffers: &[],
-            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-            cull: vk::CullModeFlags::NONE,
-            front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-            depth: None,
-            colors: &[format],
-            blend: Blend::None,
-        })?;
+        let reduce = pipelines.compute(&kernels::background_parts())?;
+        let gather = pipelines.graphics(&kernels::background(format))?;
         let parts = context.create_buffer(label, &desc, Location::Device)?;
         Ok(Self { size, parts, reduce, gather, made: Arc::default() })
     }

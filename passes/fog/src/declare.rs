@@ -8,7 +8,6 @@ use airglow_graph::{Graph, Handle, Image, ImageDesc, PassKind};
 use crate::FogError;
 use crate::fog::{ACCESSES, Bindings, Fog, Prepared};
 use crate::frame::{Counts, Fogged, Frame};
-use crate::tiles::KINDS;
 
 impl Fog {
     /// Adds the pass to a graph. The plan may be recorded again in later frames while the size stays and the medium is
@@ -37,7 +36,7 @@ impl Fog {
         frames: &[Frame<Handle<Image>>],
     ) -> Result<Vec<Fogged<Handle<Image>>>, FogError> {
         let prepared = frames.iter().map(|frame| self.prepare(frame)).collect::<Result<Vec<_>, _>>()?;
-        graph.pipelines("fog", KINDS.len());
+        graph.pipelines("fog", self.pipeline_count());
         let mut fogged = Vec::with_capacity(frames.len());
         let mut passes = Vec::with_capacity(frames.len());
         for (frame, prepared) in frames.iter().zip(prepared) {

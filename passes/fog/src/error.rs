@@ -1,6 +1,6 @@
 //! What this room refuses, and the mend.
 
-use airglow_gpu::GpuError;
+use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
 
 /// Why the pass refused its input.
@@ -31,6 +31,9 @@ pub enum FogError {
         /// What to set.
         mend: &'static str,
     },
+    /// What pipelines were not prepared for.
+    #[error("fog: {0}")]
+    Envelope(#[from] Outside),
     /// A frame that needs another plan than the one it is put into.
     #[error("fog: {what}: declare the frame anew")]
     Plan {

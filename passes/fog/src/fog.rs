@@ -6,17 +6,17 @@ use airglow_gpu::Binding;
 use airglow_gpu::ash::vk;
 use airglow_gpu::requirements::FormatNeed;
 use airglow_gpu::{
-    Blend, ColorAttachment, Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc, ImageView, Load,
-    Recorder, Rendering, Requirements, VertexAttribute, VertexBufferLayout,
+    ColorAttachment, Context, GpuError, GraphicsPipeline, ImageView, Load, Recorder, Rendering, Requirements,
 };
 use airglow_graph::{Access, LeftOut};
 
 use crate::FogError;
 use crate::control::Control;
+use crate::envelope::Pipelines;
 use crate::frame::Frame;
 use crate::kernels;
 use crate::settings::Settings;
-use crate::tiles::{KINDS, Kind, TileConstants};
+use crate::tiles::KINDS;
 
 /// What the pass does with the images of a frame, in the order of [`Bindings`]: for a host with a frame graph of its own.
 pub const ACCESSES: [(&str, Access); 3] = [
@@ -41,6 +41,7 @@ pub struct Bindings {
 pub struct Fog {
     settings: Settings,
     pipelines: [GraphicsPipeline; KINDS.len()],
+    pipeline_count: usize,
 }
 
 /// A frame as the road without a graph records it.
@@ -79,33 +80,25 @@ impl Fog {
     /// [`FogError::Range`] for settings out of range, [`FogError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: Settings) -> Result<Self, FogError> {
         settings.check()?;
-        let tiles = VertexBufferLayout {
-            stride: size_of::<TileConstants>() as u32,
-            rate: vk::VertexInputRate::INSTANCE,
-            attributes: &[VertexAttribute { location: 0, format: vk::Format::R32G32B32A32_UINT, offset: 0 }],
-        };
-        let pipeline = |name, kind| {
-            context.create_graphics_pipeline(&GraphicsPipelineDesc {
-                name,
-                vertex: &kernels::tile(kind),
-                fragment: Some(&kernels::airlight(&settings, kind)),
-                bindings: &kernels::BINDINGS,
-                push_constant_size: 0,
-                vertex_buffers: &[tiles],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                cull: vk::CullModeFlags::NONE,
-                front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-                depth: None,
-                colors: &[settings.format],
-                blend: Blend::None,
-            })
-        };
-        let pipelines = [
-            pipeline("fog airlight, no light", Kind::Dark)?,
-            pipeline("fog airlight, points", Kind::Points)?,
-            pipeline("fog airlight, all lights", Kind::All)?,
-        ];
-        Ok(Self { settings, pipelines })
+        Self::with_pipelines(settings, &Pipelines::prepare(context, (&settings).into())?)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`FogError::Envelope`] where the envelope has not got it; else as [`Fog::new`].
+    pub fn with_pipelines(settings: Settings, pipelines: &Pipelines) -> Result<Self, FogError> {
+        settings.check()?;
+        pipelines.envelope().check(&settings)?;
+        let pipeline = |kind| pipelines.graphics(&kernels::airlight(&settings, kind));
+        let [dark, points, all] = KINDS;
+        let pipeline_count = pipelines.count();
+        Ok(Self { settings, pipelines: [pipeline(dark)?, pipeline(points)?, pipeline(all)?], pipeline_count })
+    }
+
+    /// Pipelines that it and its like hold ready.
+    pub(crate) fn pipeline_count(&self) -> usize {
+        self.pipeline_count
     }
 
     /// The settings it was made for.

@@ -1,12 +1,13 @@
 //! Counts what is wrong with the images that a host gives, frame by frame, without a stall.
 
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, ComputePipeline, ComputePipelineDesc, Context, GpuError, Health,
-    ImageView, Imports, Record, Recorder, Requirements,
+    Binding, BindingDesc, BindingKind, ComputePipeline, Context, GpuError, Health, ImageView, Imports,
+    Record, Recorder, Requirements,
 };
 use airglow_graph::{Access, Graph, Handle, Image, PassKind};
 use bytemuck::{Pod, Zeroable};
 
+use crate::envelope::{Part, Pipelines};
 use crate::{FogError, kernels};
 
 /// Bindings of `health.comp`: the surfaces' radiance, their depth, the counters.
@@ -30,7 +31,7 @@ pub struct InputHealth {
 /// Push constants of `health.comp`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct SizeConstants {
+pub(crate) struct SizeConstants {
     size: [u32; 2],
 }
 
@@ -46,12 +47,19 @@ impl InputHealth {
     /// # Errors
     /// [`FogError::Gpu`] when the device refuses.
     pub fn new(context: &Context) -> Result<Self, FogError> {
-        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "fog health",
-            spirv: &kernels::health(),
-            bindings: &HEALTH_BINDINGS,
-            push_constant_size: size_of::<SizeConstants>() as u32,
-        })?;
+        Self::with_pipeline(context, kernels::health().compute_pipeline(context)?)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`FogError::Envelope`] where the envelope has not got it; else as [`InputHealth::new`].
+    pub fn with_pipelines(context: &Context, pipelines: &Pipelines) -> Result<Self, FogError> {
+        pipelines.envelope().check_part(Part::Health)?;
+        Self::with_pipeline(context, pipelines.compute(&kernels::health())?)
+    }
+
+    fn with_pipeline(context: &Context, pipeline: ComputePipeline) -> Result<Self, FogError> {
         Ok(Self { pipeline, counters: Health::new(context, &COUNTED)? })
     }
 

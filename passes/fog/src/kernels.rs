@@ -1,11 +1,16 @@
 //! The modules of this room and their bindings, stated once.
 
-use airglow_gpu::{BindingDesc, BindingKind};
+use airglow_gpu::ash::vk::{Format, VertexInputRate};
+pub(crate) use airglow_gpu::words;
+use airglow_gpu::{BindingDesc, BindingKind, Kernel, Stages, VertexAttribute, VertexBufferLayout};
 
 use crate::FogError;
+use crate::background::{BACKGROUND_BINDINGS, GatherConstants, LevelConstants};
+use crate::health::{HEALTH_BINDINGS, SizeConstants};
+use crate::lobes::LOBE_BINDINGS;
 use crate::medium::PhaseKind;
 use crate::settings::{Preset, Settings};
-use crate::tiles::Kind;
+use crate::tiles::{Kind, TileConstants};
 
 macro_rules! phases {
     ($before:literal) => {
@@ -90,26 +95,36 @@ pub const BINDINGS: [BindingDesc; 3] = [
     BindingDesc::new(2, BindingKind::SampledImage),
 ];
 
-/// The fragment stage of the airlight pass for tiles of a kind.
-pub(crate) fn airlight(settings: &Settings, kind: Kind) -> Vec<u32> {
+/// Tiles, an instance each.
+static TILE_ROWS: [VertexBufferLayout<'static>; 1] = [VertexBufferLayout {
+    stride: size_of::<TileConstants>() as u32,
+    rate: VertexInputRate::INSTANCE,
+    attributes: &[VertexAttribute { location: 0, format: Format::R32G32B32A32_UINT, offset: 0 }],
+}];
+
+/// The airlight pass over tiles of a kind.
+pub(crate) fn airlight(settings: &Settings, kind: Kind) -> Kernel {
     let (height, preset) = (usize::from(settings.height), settings.preset as usize);
     let points = usize::from(kind == Kind::Points);
-    words(match (kind, settings.environment) {
+    let fragment = match (kind, settings.environment) {
         (Kind::Dark, false) => DARK[height],
         (Kind::Dark, true) => DARK_ENVIRONMENT[preset],
         (_, false) => AIRLIGHT[height][points][preset][settings.phase as usize],
         (_, true) => AIRLIGHT_ENVIRONMENT[points][preset][settings.phase as usize],
-    })
+    };
+    let name = match kind {
+        Kind::Dark => "fog airlight, no light",
+        Kind::Points => "fog airlight, points",
+        Kind::All => "fog airlight, all lights",
+    };
+    let (vertex, format) = (TILE[usize::from(kind != Kind::Dark)], settings.format);
+    let stages = Stages::Rectangles { vertex, fragment, vertex_buffers: &TILE_ROWS, format };
+    Kernel { name, stages, bindings: BINDINGS.to_vec(), push_constant_size: 0 }
 }
 
 /// The kernel that counts a host's bad pixels.
-pub(crate) fn health() -> Vec<u32> {
-    words(HEALTH)
-}
-
-/// The vertex stage of the airlight pass.
-pub(crate) fn tile(kind: Kind) -> Vec<u32> {
-    words(TILE[usize::from(kind != Kind::Dark)])
+pub(crate) fn health() -> Kernel {
+    Kernel::compute("fog health", HEALTH, &HEALTH_BINDINGS, size_of::<SizeConstants>())
 }
 
 /// What `airlight.frag` takes for no surface, metres: above the 1e30 of the functions.
@@ -151,8 +166,8 @@ pub(crate) fn rows(rows: Rows) -> Vec<u32> {
 }
 
 /// Fills tables of lobes.
-pub(crate) fn lobe_table(preset: Preset) -> Vec<u32> {
-    words(LOBE_TABLE[preset as usize])
+pub(crate) fn lobe_table(preset: Preset) -> Kernel {
+    Kernel::compute("fog lobe tables", LOBE_TABLE[preset as usize], &LOBE_BINDINGS, 0)
 }
 
 /// The glow through lobes of rows of parameters.
@@ -171,21 +186,18 @@ pub(crate) fn spread_rows() -> Vec<u32> {
 }
 
 /// One level of the pyramid of an environment.
-pub(crate) fn background_parts() -> Vec<u32> {
-    words(BACKGROUND_PARTS)
+pub(crate) fn background_parts() -> Kernel {
+    let constants = size_of::<LevelConstants>();
+    Kernel::compute("fog background parts", BACKGROUND_PARTS, &BACKGROUND_BINDINGS, constants)
 }
 
-/// The environment through fog.
-pub(crate) fn background() -> Vec<u32> {
-    words(BACKGROUND)
-}
-
-/// One triangle over the viewport.
-pub(crate) fn rectangle() -> Vec<u32> {
-    words(RECTANGLE)
-}
-
-/// Little-endian words of a module's bytes.
-pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+/// The environment through fog, over the whole of a map.
+pub(crate) fn background(format: Format) -> Kernel {
+    let (vertex, fragment) = (RECTANGLE, BACKGROUND);
+    Kernel {
+        name: "fog background",
+        stages: Stages::Rectangles { vertex, fragment, vertex_buffers: &[], format },
+        bindings: BACKGROUND_BINDINGS.to_vec(),
+        push_constant_size: size_of::<GatherConstants>() as u32,
+    }
 }

@@ -8,11 +8,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use airglow_gpu::ash::vk::{AccessFlags2, BufferUsageFlags, PipelineStageFlags2};
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context, GpuError,
-    Imports, Label, Location, Record, Recorder,
+    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, Context, GpuError, Imports, Label, Location,
+    Record, Recorder,
 };
 use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
 
+use crate::envelope::{Part, Pipelines};
 use crate::error::check;
 use crate::reference::surface::exponent_of_ggx;
 use crate::settings::Preset;
@@ -104,13 +105,39 @@ impl LobeTables {
     /// # Errors
     /// [`FogError::Range`], [`FogError::Gpu`] when the device refuses.
     pub fn new(context: &Context, preset: Preset, lobes: &[Lobe]) -> Result<Self, FogError> {
+        Self::with(context, preset, lobes, || Ok(kernels::lobe_table(preset).compute_pipeline(context)?))
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`FogError::Envelope`] where the envelope has not got it; else as [`LobeTables::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        preset: Preset,
+        lobes: &[Lobe],
+        pipelines: &Pipelines,
+    ) -> Result<Self, FogError> {
+        let find = || {
+            pipelines.envelope().check_part(Part::Lobes(preset))?;
+            Ok(pipelines.compute(&kernels::lobe_table(preset))?)
+        };
+        Self::with(context, preset, lobes, find)
+    }
+
+    fn with(
+        context: &Context,
+        preset: Preset,
+        lobes: &[Lobe],
+        pipeline: impl Fn() -> Result<ComputePipeline, FogError>,
+    ) -> Result<Self, FogError> {
         lobes.iter().try_for_each(|lobe| lobe.check())?;
         let mut exponents: Vec<f32> = lobes.iter().map(|lobe| lobe.exponent() as f32).collect();
         exponents.sort_by(f32::total_cmp);
         exponents.dedup();
         let device = match exponents.len() {
             0 => None,
-            count => Some(Device::new(context, preset, count as u64)?),
+            count => Some(Device::new(context, preset, count as u64, pipeline()?)?),
         };
         Ok(Self { preset, exponents, filled: Arc::new(AtomicBool::new(false)), device })
     }
@@ -195,17 +222,16 @@ impl LobeTables {
 }
 
 impl Device {
-    fn new(context: &Context, preset: Preset, count: u64) -> Result<Self, FogError> {
+    fn new(
+        context: &Context,
+        preset: Preset,
+        count: u64,
+        pipeline: ComputePipeline,
+    ) -> Result<Self, FogError> {
         let bytes = 4 * count * u64::from(size(preset)).pow(2);
         let desc = BufferDesc { size: bytes, usage: BufferUsageFlags::STORAGE_BUFFER };
         let label = Label::new("fog", "fog lobe tables");
         let tables = context.create_buffer(label, &desc, Location::Device)?;
-        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "fog lobe tables",
-            spirv: &kernels::lobe_table(preset),
-            bindings: &LOBE_BINDINGS,
-            push_constant_size: 0,
-        })?;
         Ok(Self { tables, pipeline })
     }
 }

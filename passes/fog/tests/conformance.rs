@@ -3,18 +3,19 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail the test they are called from")]
 
 use airglow_fog::{
-    ACCESSES, BINDINGS, Bindings, Camera, Fog, Frame, Light, Medium, Pass, PhaseKind, Prepared, Preset,
-    Settings, View,
+    ACCESSES, BINDINGS, Background, Bindings, Camera, Envelope, Fog, Frame, InputHealth, Light, Lobe,
+    LobeTables, Medium, Pass, PhaseKind, Pipelines, Prepared, Preset, Settings, View,
 };
 use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
 use airglow_gpu::{
-    AdoptInfo, Context, DeviceMask, Execution, GpuError, Options, Record, Recorder, Requirements,
+    AdoptInfo, Context, DeviceMask, Execution, GpuError, Options, Permutations, Record, Recorder,
+    Requirements,
 };
 use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_math::World;
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, Refusal, Room, change, conform, fail_each, shuffle,
+    Declared, Given, HostResource, MakePrepared, Refusal, Room, change, conform, fail_each, prepare, shuffle,
 };
 use airglow_tests::device::open;
 use airglow_tests::narrow;
@@ -70,13 +71,15 @@ impl Room for Fogged {
         let written = ImageUsageFlags::COLOR_ATTACHMENT | ImageUsageFlags::TRANSFER_SRC;
         let read = ImageUsageFlags::SAMPLED | ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
         let image = |format, usage| image(self.size, format, usage);
-        let (surface_desc, picture) = (image(hdr, ImageUsageFlags::SAMPLED), image(hdr, written));
+        let format = self.fog.settings().format;
+        let (surface_desc, picture) = (image(hdr, ImageUsageFlags::SAMPLED), image(format, written));
+        let bytes = picture.bytes().unwrap_or_default() as usize;
         let drawn = [Access::ColorAttachmentWrite, Access::TransferSource];
         let read_depth = [Access::FragmentSampledDepth; 2];
         vec![
             HostResource::image("surface", surface_desc, surface, [Access::FragmentSampled; 2]),
             HostResource::image("depth", image(Format::D32_SFLOAT, read), depth, read_depth),
-            HostResource::image("picture", picture, vec![0xff; 16 * pixels], drawn),
+            HostResource::image("picture", picture, vec![0xff; bytes], drawn),
         ]
     }
 
@@ -147,6 +150,41 @@ fn every_call_that_fails_is_told_and_leaves_nothing() {
     let calls = fail_each(Fogged::new, &Fog::requirements(&Settings::default()));
     println!("{calls} calls failed in turn");
     assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn nothing_within_the_envelope_makes_a_pipeline() {
+    let half = Format::R16G16B16A16_SFLOAT;
+    let envelope = || Envelope {
+        formats: vec![Settings::default().format, half],
+        presets: vec![Preset::Default],
+        phases: vec![PhaseKind::Isotropic, PhaseKind::HenyeyGreenstein],
+        height: vec![false, true],
+        environment: vec![false],
+        backgrounds: true,
+        lobes: true,
+        health: true,
+    };
+    let make = |settings: Settings| {
+        move |context: &Context, pipelines: &Pipelines| {
+            Background::with_pipelines(context, [16, 8], settings.format, pipelines)?;
+            LobeTables::with_pipelines(context, settings.preset, &[Lobe::Lambert], pipelines)?;
+            InputHealth::with_pipelines(context, pipelines)?;
+            Ok(Fogged { fog: Fog::with_pipelines(settings, pipelines)?, pass: None, size: SIZE })
+        }
+    };
+    let makes: Vec<_> = envelope().settings().into_iter().map(make).collect();
+    let makes: Vec<MakePrepared<'_, _, _>> = makes.iter().map(|make| make as _).collect();
+    let count = envelope().pipeline_count().unwrap();
+    let all = envelope().settings().iter().fold(Background::requirements(half), |all, settings| {
+        all.and(&Fog::requirements(settings)).and(&InputHealth::requirements())
+    });
+    let made = prepare(&all, |context| Pipelines::prepare(context, envelope()), count, &makes);
+    println!("{made} pipelines for {} settings", makes.len());
+    // By format and height: dark, and two kinds of lights by phase; two of backgrounds, their parts, tables, health.
+    assert_eq!((made, makes.len()), (4 * (1 + 2 * 2) + 2 + 3, 8));
+    let outside = envelope().check(&Settings { environment: true, ..Settings::default() }).unwrap_err();
+    assert!(outside.to_string().contains("Envelope::environment"), "{outside}");
 }
 
 #[test]

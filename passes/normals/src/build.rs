@@ -53,6 +53,7 @@ pub struct Build {
     pub(crate) counters: Option<Buffer>,
     texture: Option<LobeTexture>,
     left_out: Vec<LeftOut>,
+    pub(crate) pipeline_count: usize,
 }
 
 impl Normals {
@@ -65,7 +66,7 @@ impl Normals {
     pub fn build(&self, context: &Context, map: &NormalMap) -> Result<Build, NormalsError> {
         let levels = chain::levels(map, &self.settings)?;
         chain::check_build(map, &self.settings, context.memory_left())?;
-        let mut build = Build::empty(map);
+        let mut build = Build { pipeline_count: self.pipeline_count, ..Build::empty(map) };
         let Some(texture) = self.texture(context, &levels)? else { return Ok(build) };
         let vectors: Vec<[f32; 4]> =
             map.normals().iter().map(|n| n.extend(1.0).as_vec4().to_array()).collect();
@@ -112,7 +113,7 @@ impl Normals {
         if !levels.iter().map(sizes).eq(chain.levels.iter().map(|bytes| Some(bytes.len()))) {
             return Err(NormalsError::Chain);
         }
-        let mut build = Build::empty(map);
+        let mut build = Build { pipeline_count: self.pipeline_count, ..Build::empty(map) };
         let Some(texture) = self.texture(context, &levels)? else { return Ok(build) };
         for bytes in &chain.levels {
             let desc = BufferDesc { size: bytes.len() as u64, usage: BufferUsageFlags::TRANSFER_SRC };
@@ -237,6 +238,7 @@ impl Build {
             normals: None,
             lobes: Vec::new(),
             packed: Vec::new(),
+            pipeline_count: 0,
             counters: None,
             texture: None,
             left_out: vec![left_out],

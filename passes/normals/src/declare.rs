@@ -26,7 +26,7 @@ impl Build {
         most: usize,
     ) -> Option<Handle<Image>> {
         if self.next == 0 {
-            graph.pipelines("normals", 3);
+            graph.pipelines("normals", self.pipeline_count);
             self.left_out().iter().for_each(|left_out| graph.leave_out(left_out.clone()));
         }
         let stages = self.take(most).to_vec();

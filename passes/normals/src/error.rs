@@ -1,6 +1,6 @@
 //! What this room refuses, and the mend.
 
-use airglow_gpu::GpuError;
+use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
 
 use crate::cache::StoreError;
@@ -64,6 +64,9 @@ pub enum NormalsError {
         /// The next setting that fits.
         mend: String,
     },
+    /// Settings that pipelines were not prepared for.
+    #[error("normals: {0}")]
+    Envelope(#[from] Outside),
     /// A chain that is not of its map.
     #[error("normals: the chain has not the levels of its map: build it from this map with these settings")]
     Chain,

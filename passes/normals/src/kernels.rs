@@ -1,6 +1,7 @@
 //! The modules of this room and their bindings, stated once.
 
-use airglow_gpu::{BindingDesc, BindingKind};
+pub(crate) use airglow_gpu::words;
+use airglow_gpu::{BindingDesc, BindingKind, Kernel};
 use bytemuck::{Pod, Zeroable};
 
 use crate::NormalsError;
@@ -145,10 +146,12 @@ pub struct RowConstants {
 ///
 /// # Errors
 /// [`NormalsError::Range`] for a number without kernel.
-pub(crate) fn fit(lobes: usize) -> Result<Vec<u32>, NormalsError> {
-    let found = FIT.iter().find(|(count, _)| *count == lobes).map(|(_, bytes)| words(bytes));
-    let (what, range) = ("the number of lobes", "1, 2, 4 or 6");
-    found.ok_or(NormalsError::Range { what, value: lobes as f64, range })
+pub(crate) fn fit(lobes: usize) -> Result<Kernel, NormalsError> {
+    let Some((_, module)) = FIT.iter().find(|(count, _)| *count == lobes) else {
+        let (what, range) = ("the number of lobes", "1, 2, 4 or 6");
+        return Err(NormalsError::Range { what, value: lobes as f64, range });
+    };
+    Ok(Kernel::compute("normals fit", module, &BINDINGS, size_of::<FitConstants>()))
 }
 
 /// What a rival averages.
@@ -195,23 +198,21 @@ pub(crate) fn material(brdf: Brdf, directions: Directions) -> [[f32; 4]; 2] {
 }
 
 /// The kernel that puts so many lobes in order; there is none for one.
-pub(crate) fn align(lobes: usize) -> Option<Vec<u32>> {
-    ALIGN.iter().find(|(count, _)| *count == lobes).map(|(_, bytes)| words(bytes))
+pub(crate) fn align(lobes: usize) -> Option<Kernel> {
+    let (_, module) = ALIGN.iter().find(|(count, _)| *count == lobes)?;
+    Some(Kernel::compute("normals align", module, &BINDINGS, size_of::<AlignConstants>()))
 }
 
-pub(crate) fn pack(storage: Storage) -> Vec<u32> {
-    match storage {
-        Storage::F16 => words(PACK_F16),
-        Storage::Snorm8 => words(PACK_SNORM8),
-        Storage::Octahedral8 => words(PACK_OCTAHEDRAL8),
-    }
+/// The kernel that writes lobes as a texture holds them.
+pub(crate) fn pack(storage: Storage) -> Kernel {
+    let module = match storage {
+        Storage::F16 => PACK_F16,
+        Storage::Snorm8 => PACK_SNORM8,
+        Storage::Octahedral8 => PACK_OCTAHEDRAL8,
+    };
+    Kernel::compute("normals pack", module, &BINDINGS, size_of::<PackConstants>())
 }
 
 pub(crate) fn rows() -> Vec<u32> {
     words(ROWS)
-}
-
-/// Little-endian words of a module's bytes.
-pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }

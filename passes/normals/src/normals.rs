@@ -2,12 +2,13 @@
 
 use airglow_gpu::ash::vk::FormatFeatureFlags;
 use airglow_gpu::requirements::FormatNeed;
-use airglow_gpu::{ComputePipeline, ComputePipelineDesc, Context, Requirements};
+use airglow_gpu::{ComputePipeline, Context, Requirements};
 
 use crate::NormalsError;
 use crate::chain::MOST_ITERATIONS;
+use crate::envelope::Pipelines;
 use crate::fit::FitSettings;
-use crate::kernels::{self, AlignConstants, BINDINGS, FitConstants, PackConstants};
+use crate::kernels::{self, BINDINGS};
 use crate::settings::Settings;
 
 /// Builds textures of lobes from normal maps. Made once for a device and [`Settings`]; holds no map.
@@ -18,6 +19,8 @@ pub struct Normals {
     /// None for one lobe, which has but one order.
     pub(crate) align: Option<ComputePipeline>,
     pub(crate) pack: ComputePipeline,
+    /// Pipelines that it and its like hold ready.
+    pub(crate) pipeline_count: usize,
 }
 
 impl Normals {
@@ -39,28 +42,28 @@ impl Normals {
     /// [`NormalsError::Range`] for settings out of range or without kernel, [`NormalsError::Gpu`].
     pub fn new(context: &Context, settings: Settings) -> Result<Self, NormalsError> {
         settings.check()?;
+        Self::with_pipelines(settings, &Pipelines::prepare(context, (&settings).into())?)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`NormalsError::Envelope`] for settings outside the envelope they were prepared for; else as [`Normals::new`].
+    pub fn with_pipelines(settings: Settings, pipelines: &Pipelines) -> Result<Self, NormalsError> {
+        settings.check()?;
         let FitSettings { lobes, iterations, .. } = settings.fit;
         if iterations > MOST_ITERATIONS {
             let (what, value) = ("the number of iterations", iterations as f64);
             return Err(NormalsError::Range { what, value, range: "0 to 32 on a device" });
         }
-        let pipeline = |name, spirv: &[u32], constants: usize| {
-            let push_constant_size = constants as u32;
-            context.create_compute_pipeline(&ComputePipelineDesc {
-                name,
-                spirv,
-                bindings: &BINDINGS,
-                push_constant_size,
-            })
-        };
+        pipelines.envelope().check(&settings)?;
         let align = kernels::align(lobes);
-        let align =
-            align.map(|spirv| pipeline("normals align", &spirv, size_of::<AlignConstants>())).transpose()?;
         Ok(Self {
             settings,
-            fit: pipeline("normals fit", &kernels::fit(lobes)?, size_of::<FitConstants>())?,
-            align,
-            pack: pipeline("normals pack", &kernels::pack(settings.storage), size_of::<PackConstants>())?,
+            fit: pipelines.compute(&kernels::fit(lobes)?)?,
+            align: align.map(|kernel| pipelines.compute(&kernel)).transpose()?,
+            pack: pipelines.compute(&kernels::pack(settings.storage))?,
+            pipeline_count: pipelines.count(),
         })
     }
 

@@ -39,7 +39,7 @@ impl Radiance {
     ) -> Result<Lit, RadianceError> {
         let Prepared { stages, ours, light_bytes, left_out, control, scene } =
             self.prepare(receiver, lights)?;
-        graph.pipelines("radiance", Self::PIPELINES);
+        graph.pipelines("radiance", self.pipeline_count());
         left_out.into_iter().for_each(|left_out| graph.leave_out(left_out));
         let Some(scene) = scene else { return Ok(Lit { light: Vec::new(), looks: Vec::new(), control }) };
         let mut named = BTreeMap::new();

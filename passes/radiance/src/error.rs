@@ -1,6 +1,6 @@
 //! The one error type of the room.
 
-use airglow_gpu::GpuError;
+use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
 
 /// Why incident radiance could not be sampled or reconstructed.
@@ -43,6 +43,9 @@ pub enum RadianceError {
         /// What can be given.
         range: &'static str,
     },
+    /// Settings that pipelines were not prepared for.
+    #[error("radiance: {0}")]
+    Envelope(#[from] Outside),
     /// A receiver that the memory budget has no room for.
     #[error("the receiver takes {size} bytes and the memory budget has {left} left: {mend}")]
     Budget {

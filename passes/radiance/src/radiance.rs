@@ -1,13 +1,14 @@
 //! The pass: its kernels, kept from frame to frame.
 
-use airglow_gpu::{Context, Requirements};
+use airglow_gpu::{Context, Kernel, Requirements};
 use airglow_graph::{Access, LeftOut, PassKind};
 
 use crate::RadianceError;
 use crate::control::{Control, Lights};
+use crate::envelope::Pipelines;
 use crate::gpu::keep::KEEP_BINDINGS;
 use crate::gpu::refinement::REFINE_BINDINGS;
-use crate::gpu::{Keep, Refinement, Texels, VertexKernels, vertices};
+use crate::gpu::{Keep, Refinement, Texels, VertexKernels, keep, kernels, refinement, vertices};
 use crate::pass_settings::PassSettings;
 use crate::receiver::Receiver;
 use crate::stage::{Prepared, Resource, Scene, Stage, Work};
@@ -20,6 +21,7 @@ pub struct Radiance {
     texels: Texels,
     keep: Keep,
     vertices: VertexKernels,
+    pipeline_count: usize,
 }
 
 impl Radiance {
@@ -39,19 +41,41 @@ impl Radiance {
     /// [`RadianceError::Setting`] for settings out of range, [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: PassSettings) -> Result<Self, RadianceError> {
         settings.check()?;
-        let texels = Texels::new(context, settings.texels())?;
-        let texels = if settings.closed_forms { texels.with_closed_forms(context)? } else { texels };
+        Self::with_pipelines(context, settings, &Pipelines::prepare(context, (&settings).into())?)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`RadianceError::Envelope`] for settings outside the envelope they were prepared for; else as [`Radiance::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        settings: PassSettings,
+        pipelines: &Pipelines,
+    ) -> Result<Self, RadianceError> {
+        settings.check()?;
+        pipelines.envelope().check(&settings)?;
+        let shape = settings.shape();
+        let find = |kernel: &Kernel| pipelines.compute(kernel);
+        let texels = Texels::with_kernel(context, settings.texels(), find)?;
+        let texels = match settings.closed_forms {
+            true => texels.with_analytic(find(&kernels::analytic(shape)?)?),
+            false => texels,
+        };
         Ok(Self {
             settings,
-            refinement: Refinement::new(context, settings.shape())?,
+            refinement: Refinement::with_pipeline(find(&refinement::kernel())?, shape),
             texels,
-            keep: Keep::new(context, settings.shape())?,
-            vertices: VertexKernels::new(context, settings.shape())?,
+            keep: Keep::with_pipeline(find(&keep::kernel())?, shape),
+            vertices: VertexKernels::with_kernels(shape, find)?,
+            pipeline_count: pipelines.count(),
         })
     }
 
-    /// Pipelines that it holds.
-    pub(crate) const PIPELINES: usize = 6;
+    /// Pipelines that it and its like hold ready.
+    pub(crate) fn pipeline_count(&self) -> usize {
+        self.pipeline_count
+    }
 
     /// The settings it was made for.
     #[must_use]

@@ -1,12 +1,8 @@
 //! What a host may come to need, and every pipeline of it, made ahead of the frames on a thread of the host's choice.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
-use airglow_gpu::ash::vk;
-use airglow_gpu::{
-    Blend, ComputePipeline, ComputePipelineDesc, Context, GpuError, GraphicsPipeline, GraphicsPipelineDesc,
-};
+use airglow_gpu::{ComputePipeline, Context, GpuError, GraphicsPipeline, Outside, Permutations, Stages};
 
 use crate::RelightError;
 use crate::kernels::{self, Kernel, Source};
@@ -80,21 +76,13 @@ impl Envelope {
         Ok(all)
     }
 
-    /// How many pipelines it takes.
-    ///
-    /// # Errors
-    /// As [`Envelope::settings`].
-    pub fn pipeline_count(&self) -> Result<usize, RelightError> {
-        Ok(permutations(&self.settings()?).len())
-    }
-
     /// Refuses settings outside, naming the first that is.
     ///
     /// # Errors
     /// [`RelightError::Envelope`].
     pub fn check(&self, settings: &Settings) -> Result<(), RelightError> {
         let Settings { order, storage, output, method, light, visibility, normals, health } = *settings;
-        let fields = [
+        Ok(Outside::check([
             (self.orders.contains(&order), "orders", format!("order {order}")),
             (self.storages.contains(&storage), "storages", format!("storage {storage:?}")),
             (self.outputs.contains(&output), "outputs", format!("output {output:?}")),
@@ -103,11 +91,16 @@ impl Envelope {
             (self.visibility || !visibility, "visibility", "dynamic visibility".to_owned()),
             (self.normals || !normals, "normals", "lighting from normals".to_owned()),
             (self.health || !health, "health", "counting of bad texels".to_owned()),
-        ];
-        match fields.into_iter().find(|(inside, ..)| !inside) {
-            Some((_, field, setting)) => Err(RelightError::Envelope { setting, field }),
-            None => Ok(()),
-        }
+        ])?)
+    }
+}
+
+impl Permutations for Envelope {
+    type Error = RelightError;
+
+    fn kernels(&self) -> Result<Vec<airglow_gpu::Kernel>, RelightError> {
+        let of = |settings: &Settings| kernels_of(settings).into_iter().map(Made::kernel);
+        Ok(self.settings()?.iter().flat_map(of).collect())
     }
 }
 
@@ -115,68 +108,61 @@ fn product<'a, A, B>(first: &'a [A], second: &'a [B]) -> impl Iterator<Item = (&
     first.iter().flat_map(move |a| second.iter().map(move |b| (a, b)))
 }
 
-/// A pipeline by what it does; equal ones are the same pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Permutation {
-    /// Where its module begins: modules are told apart by their place in the program.
-    module: usize,
-    method: Stage,
+/// Every pipeline of an [`Envelope`]: no [`Relight`](crate::Relight) made with it makes another, nor does any frame.
+pub type Pipelines = airglow_gpu::Pipelines<Envelope>;
+
+/// A kernel and the stages that it is made for.
+#[derive(Clone, Copy)]
+pub(crate) struct Made {
+    pub kernel: Kernel,
+    method: Method,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Stage {
-    Compute,
-    Fragment,
-}
+impl Made {
+    fn compute(kernel: Kernel) -> Self {
+        Self { kernel, method: Method::Compute }
+    }
 
-impl Permutation {
-    fn new(kernel: &Kernel, method: Stage) -> Self {
-        Self { module: kernel.spirv.as_ptr().addr(), method }
+    /// What its pipeline is made of.
+    fn kernel(self) -> airglow_gpu::Kernel {
+        let Kernel { name, spirv, push_constant_size, .. } = self.kernel;
+        let stages = match self.method {
+            Method::Compute => Stages::Compute(spirv),
+            Method::Fragment => Stages::Rectangles {
+                vertex: kernels::RECTANGLE_VERTEX,
+                fragment: spirv,
+                vertex_buffers: &[],
+                format: RECTANGLE_FORMAT,
+            },
+        };
+        let bindings = self.kernel.binding_descs();
+        airglow_gpu::Kernel { name, stages, bindings, push_constant_size }
     }
 }
 
 /// The kernel over vertices of a source.
-fn vertex_kernel(settings: &Settings, source: Source) -> (Permutation, Kernel) {
-    let (kernel, method) = match settings.method {
-        Method::Compute => (kernels::vertices(settings, source), Stage::Compute),
-        Method::Fragment => (kernels::rectangle(settings, source), Stage::Fragment),
+fn vertex_kernel(settings: &Settings, source: Source) -> Made {
+    let method = settings.method;
+    let kernel = match method {
+        Method::Compute => kernels::vertices(settings, source),
+        Method::Fragment => kernels::rectangle(settings, source),
     };
-    (Permutation::new(&kernel, method), kernel)
+    Made { kernel, method }
 }
 
 /// Every kernel that the settings can need.
-pub(crate) fn kernels_of(settings: &Settings) -> impl Iterator<Item = Kernel> {
-    permutations(&[*settings]).into_values()
-}
-
-/// Every kernel that some of `all` need, once.
-fn permutations(all: &[Settings]) -> BTreeMap<Permutation, Kernel> {
-    let of = |settings: &Settings| {
-        let compute = |kernel: Kernel| (Permutation::new(&kernel, Stage::Compute), kernel);
-        let order = settings.order;
-        let mut found: Vec<_> =
-            Source::all(settings).into_iter().map(|source| vertex_kernel(settings, source)).collect();
-        if settings.light == LightKind::Uniform {
-            let light = [kernels::environment_rows, kernels::environment_bands, kernels::rotate];
-            found.extend(light.map(|kernel| compute(kernel(order))));
-            found.extend(settings.health.then(|| compute(kernels::counted_environment_rows(order))));
-            found.extend(settings.shadows().then(|| compute(kernels::product_matrix(order))));
-        }
-        found
-    };
-    all.iter().flat_map(of).collect()
-}
-
-/// Every pipeline of an [`Envelope`]: no [`Relight`](crate::Relight) made with it makes another, nor does any frame.
-/// Clones refer to the same.
-#[derive(Clone)]
-pub struct Pipelines {
-    shared: Arc<Made>,
-}
-
-struct Made {
-    envelope: Envelope,
-    pipelines: BTreeMap<Permutation, VertexPipeline>,
+pub(crate) fn kernels_of(settings: &Settings) -> Vec<Made> {
+    let order = settings.order;
+    let mut found: Vec<_> =
+        Source::all(settings).into_iter().map(|source| vertex_kernel(settings, source)).collect();
+    if settings.light == LightKind::Uniform {
+        let mut light =
+            vec![kernels::environment_rows(order), kernels::environment_bands(order), kernels::rotate(order)];
+        light.extend(settings.health.then(|| kernels::counted_environment_rows(order)));
+        light.extend(settings.shadows().then(|| kernels::product_matrix(order)));
+        found.extend(light.into_iter().map(Made::compute));
+    }
+    found
 }
 
 /// A pipeline over the vertices of a chunk, or of the light.
@@ -194,94 +180,45 @@ pub(crate) struct LightPipelines {
     pub matrix: Option<ComputePipeline>,
 }
 
-impl Pipelines {
-    /// Makes every pipeline of the envelope, on the thread that calls it, with the host's pipeline cache. Frames may
-    /// be recorded on other threads meanwhile.
-    ///
-    /// # Errors
-    /// As [`Envelope::settings`]; [`RelightError::Gpu`] when the device refuses.
-    pub fn prepare(context: &Context, envelope: Envelope) -> Result<Self, RelightError> {
-        let mut pipelines = BTreeMap::new();
-        for (permutation, kernel) in permutations(&envelope.settings()?) {
-            let pipeline = match permutation.method {
-                Stage::Compute => VertexPipeline::Compute(compute(context, &kernel)?),
-                Stage::Fragment => VertexPipeline::Rectangle(rectangle(context, &kernel)?),
-            };
-            pipelines.insert(permutation, pipeline);
-        }
-        Ok(Self { shared: Arc::new(Made { envelope, pipelines }) })
-    }
-
-    /// What they were prepared for.
-    #[must_use]
-    pub fn envelope(&self) -> &Envelope {
-        &self.shared.envelope
-    }
-
-    /// How many there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.shared.pipelines.len()
-    }
-
-    /// Those over vertices that the settings can need.
-    pub(crate) fn vertices(&self, settings: &Settings) -> BTreeMap<Source, VertexPipeline> {
-        let pipeline = |source| {
-            let (permutation, _) = vertex_kernel(settings, source);
-            Some((source, self.shared.pipelines.get(&permutation)?.clone()))
+/// Those over vertices that the settings can need.
+pub(crate) fn of_vertices(
+    pipelines: &Pipelines,
+    settings: &Settings,
+) -> Result<BTreeMap<Source, VertexPipeline>, GpuError> {
+    let pipeline = |source| {
+        let kernel = vertex_kernel(settings, source).kernel();
+        let found = match settings.method {
+            Method::Compute => VertexPipeline::Compute(pipelines.compute(&kernel)?),
+            Method::Fragment => VertexPipeline::Rectangle(pipelines.graphics(&kernel)?),
         };
-        Source::all(settings).into_iter().filter_map(pipeline).collect()
-    }
-
-    /// Those of uniform light, where the settings have it.
-    pub(crate) fn light(&self, settings: &Settings) -> Option<LightPipelines> {
-        let compute = |kernel: fn(usize) -> Kernel| match self
-            .shared
-            .pipelines
-            .get(&Permutation::new(&kernel(settings.order), Stage::Compute))?
-        {
-            VertexPipeline::Compute(pipeline) => Some(pipeline.clone()),
-            VertexPipeline::Rectangle(_) => None,
-        };
-        if settings.light != LightKind::Uniform {
-            return None;
-        }
-        let rows = match settings.health {
-            true => kernels::counted_environment_rows,
-            false => kernels::environment_rows,
-        };
-        Some(LightPipelines {
-            rows: compute(rows)?,
-            bands: compute(kernels::environment_bands)?,
-            rotate: compute(kernels::rotate)?,
-            matrix: compute(kernels::product_matrix),
-        })
-    }
+        Ok((source, found))
+    };
+    Source::all(settings).into_iter().map(pipeline).collect()
 }
 
-/// A compute pipeline of a kernel.
+/// Those of uniform light, where the settings have it.
+pub(crate) fn of_light(
+    pipelines: &Pipelines,
+    settings: &Settings,
+) -> Result<Option<LightPipelines>, GpuError> {
+    if settings.light != LightKind::Uniform {
+        return Ok(None);
+    }
+    let compute =
+        |kernel: fn(usize) -> Kernel| pipelines.compute(&Made::compute(kernel(settings.order)).kernel());
+    let rows = match settings.health {
+        true => kernels::counted_environment_rows,
+        false => kernels::environment_rows,
+    };
+    Ok(Some(LightPipelines {
+        rows: compute(rows)?,
+        bands: compute(kernels::environment_bands)?,
+        rotate: compute(kernels::rotate)?,
+        matrix: settings.shadows().then(|| compute(kernels::product_matrix)).transpose()?,
+    }))
+}
+
+/// A compute pipeline of a kernel by itself.
 pub(crate) fn compute(context: &Context, kernel: &Kernel) -> Result<ComputePipeline, GpuError> {
-    context.create_compute_pipeline(&ComputePipelineDesc {
-        name: kernel.name,
-        spirv: &kernel.words(),
-        bindings: &kernel.binding_descs(),
-        push_constant_size: kernel.push_constant_size,
-    })
-}
-
-fn rectangle(context: &Context, kernel: &Kernel) -> Result<GraphicsPipeline, GpuError> {
-    context.create_graphics_pipeline(&GraphicsPipelineDesc {
-        name: kernel.name,
-        vertex: &kernels::rectangle_vertex(),
-        fragment: Some(&kernel.words()),
-        bindings: &kernel.binding_descs(),
-        push_constant_size: kernel.push_constant_size,
-        vertex_buffers: &[],
-        topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-        cull: vk::CullModeFlags::NONE,
-        front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-        depth: None,
-        colors: &[RECTANGLE_FORMAT],
-        blend: Blend::None,
-    })
+    Made::compute(*kernel).kernel().compute_pipeline(context)
 }

@@ -1,6 +1,6 @@
 //! What this room refuses, and the mend.
 
-use airglow_gpu::GpuError;
+use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
 
 /// Why relighting refused its input.
@@ -22,15 +22,8 @@ pub enum RelightError {
         mend: &'static str,
     },
     /// Settings that pipelines were not prepared for.
-    #[error(
-        "relight: {setting} is outside the envelope that was prepared: add it to Envelope::{field} and prepare"
-    )]
-    Envelope {
-        /// The setting.
-        setting: String,
-        /// The field of [`Envelope`](crate::Envelope) that lacks it.
-        field: &'static str,
-    },
+    #[error("relight: {0}")]
+    Envelope(#[from] Outside),
     /// A slice whose length does not fit.
     #[error("relight: {what} of \"{name}\" has {actual} values but {expected} are needed: resize it")]
     Length {

@@ -10,13 +10,13 @@ use airglow_graph::Access;
 
 use modules::{
     ByOrder, COLOUR, ENVIRONMENT_BANDS, ENVIRONMENT_ROWS, ENVIRONMENT_ROWS_HEALTH, INCIDENT_BAKED,
-    INCIDENT_BOTH, INCIDENT_DYNAMIC, INCIDENT_OPEN, PRODUCT, PRODUCT_MATRIX, RECTANGLE, RECTANGLE_VERTEX,
-    ROTATE,
+    INCIDENT_BOTH, INCIDENT_DYNAMIC, INCIDENT_OPEN, PRODUCT, PRODUCT_MATRIX, RECTANGLE, ROTATE,
 };
 
 use crate::rotation::RotateConstants;
 use crate::settings::{LightKind, Output, Settings, Storage};
 
+pub(crate) use modules::RECTANGLE_VERTEX;
 pub(crate) use source::Source;
 
 /// Invocations of a workgroup of the kernels that run over vertices; README.md has the measurement.
@@ -47,22 +47,11 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// The module as words.
-    #[must_use]
-    pub fn words(&self) -> Vec<u32> {
-        words(self.spirv)
-    }
-
     /// The bindings as a pipeline takes them.
     #[must_use]
     pub fn binding_descs(&self) -> Vec<BindingDesc> {
         self.bindings.iter().map(|binding| BindingDesc::new(binding.binding, binding.kind)).collect()
     }
-}
-
-/// Little-endian words of a module's bytes.
-pub(crate) fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }
 
 const fn storage(binding: u32, access: Access) -> Binding {
@@ -198,12 +187,6 @@ pub(crate) fn rectangle(settings: &Settings, source: Source) -> Kernel {
         },
         push_constant_size: CHUNK,
     }
-}
-
-/// One triangle over the viewport.
-#[must_use]
-pub(crate) fn rectangle_vertex() -> Vec<u32> {
-    words(RECTANGLE_VERTEX)
 }
 
 fn storage_index(settings: &Settings) -> usize {

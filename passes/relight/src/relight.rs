@@ -10,7 +10,7 @@ use airglow_math::World;
 
 use crate::RelightError;
 use crate::control::Projected;
-use crate::envelope::{LightPipelines, Pipelines, VertexPipeline, kernels_of};
+use crate::envelope::{LightPipelines, Pipelines, VertexPipeline, kernels_of, of_light, of_vertices};
 use crate::kernels::Source;
 use crate::mesh::{Mesh, MeshId, Meshes};
 use crate::pack::{ChunkLimits, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
@@ -77,7 +77,9 @@ impl Relight {
         if settings.check().is_err() {
             return requirements;
         }
-        kernels_of(settings).fold(requirements, |all, kernel| all.with_descriptors(&kernel.binding_descs()))
+        kernels_of(settings)
+            .iter()
+            .fold(requirements, |all, made| all.with_descriptors(&made.kernel.binding_descs()))
     }
 
     /// Makes the kernels and tables that `settings` need on a device.
@@ -150,8 +152,8 @@ impl Relight {
             world: World::default(),
             chunk_vertices,
             meshes: Meshes::default(),
-            vertex_pipelines: pipelines.vertices(&settings),
-            light_pipelines: pipelines.light(&settings),
+            vertex_pipelines: of_vertices(pipelines, &settings)?,
+            light_pipelines: of_light(pipelines, &settings)?,
             pipeline_count: pipelines.count(),
             environment_light: uniform.then(light_buffer).transpose()?,
             map: None,

@@ -3,13 +3,13 @@
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ComputePipelineDesc, Context, Imports, Label, Location, Record,
+    Binding, BindingDesc, BindingKind, Buffer, ComputePipelineDesc, Context, Imports, Label, Location,
+    Record, words,
 };
 use airglow_graph::{Access, BufferDesc, Graph, Handle, PassKind};
 use bytemuck::Pod;
 
 use crate::RelightError;
-use crate::kernels::words;
 use crate::pack::{Layout, VERTEX_ALIGNMENT};
 use crate::resident::{OWNER, Resident};
 use crate::settings::Storage;

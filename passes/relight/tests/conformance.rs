@@ -13,7 +13,7 @@ use airglow_relight::{
 };
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, Refusal, Room, change, conform, fail_each, shuffle,
+    Declared, Given, HostResource, Refusal, Room, change, conform, fail_each, shuffle, stage,
 };
 use airglow_tests::narrow;
 use glam::DQuat;
@@ -121,8 +121,12 @@ impl Room for Relit {
 fn colours(settings: Settings, options: &Options) -> Vec<f32> {
     let make = |context: &Context| Relit::new(context, settings).expect("the settings are sound");
     let outputs = conform(make, &Relight::requirements(&settings), options);
+    values(&outputs[0])
+}
+
+fn values(bytes: &[u8]) -> Vec<f32> {
     let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    outputs[0].chunks_exact(4).map(value).collect()
+    bytes.chunks_exact(4).map(value).collect()
 }
 
 #[test]
@@ -141,6 +145,13 @@ fn a_lesser_device_gets_the_same_bits() {
     let limits = vec![(Limit::StorageBufferRange, 32 << 10)];
     let mask = DeviceMask { limits, without_optional_features: true };
     assert_eq!(colours(settings, &Options { mask, ..Options::default() }), whole);
+}
+
+#[test]
+fn a_device_whose_memory_the_cpu_cannot_map_gets_the_same_bits() {
+    let settings = Settings::default();
+    let staged = stage(|context| Relit::new(context, settings), &Relight::requirements(&settings));
+    assert_eq!(values(&staged[0]), colours(settings, &Options::default()));
 }
 
 #[test]

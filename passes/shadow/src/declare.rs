@@ -38,7 +38,7 @@ impl Shadow {
             });
             return Shadowed { visibility: None, records: None };
         }
-        graph.pipelines("shadow", 1);
+        graph.pipelines("shadow", self.pipeline_count());
         let mut pass = graph.pass("shadow visibility", PassKind::Compute);
         pass.read(&positions, Access::ComputeStorageRead);
         if let Some(normals) = &normals {

@@ -1,6 +1,6 @@
 //! What this room refuses, and the mend.
 
-use airglow_gpu::GpuError;
+use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
 
 /// Why the room refused its input.
@@ -41,6 +41,9 @@ pub enum ShadowError {
         /// What there is.
         known: &'static str,
     },
+    /// Settings that pipelines were not prepared for.
+    #[error("shadow: {0}")]
+    Envelope(#[from] Outside),
     /// A refusal of the mathematics.
     #[error("shadow: {0}")]
     Math(#[from] MathError),

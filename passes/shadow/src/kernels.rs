@@ -1,10 +1,11 @@
 //! The modules of this room, their bindings and constants, stated once.
 
-use airglow_gpu::{BindingDesc, BindingKind};
+use airglow_gpu::{BindingDesc, BindingKind, Kernel, words};
 use bytemuck::{Pod, Zeroable};
 
 use crate::exponential::Exponential;
 use crate::order::MIN_ORDER;
+use crate::pixels::{PIXEL_BINDINGS, PixelConstants};
 use crate::polynomial;
 use crate::table::{LINEAR_STEPS, Tables};
 
@@ -168,7 +169,7 @@ impl Program {
 }
 
 /// The kernel over receivers; `None` where there is none.
-pub(crate) fn visibility(kind: Kind, order: usize, normals: bool) -> Option<Vec<u32>> {
+pub(crate) fn visibility(kind: Kind, order: usize, normals: bool) -> Option<Kernel> {
     let modules = match (kind, normals) {
         (Kind::Series, false) => &SERIES,
         (Kind::Series, true) => &SERIES_NORMALS,
@@ -176,12 +177,15 @@ pub(crate) fn visibility(kind: Kind, order: usize, normals: bool) -> Option<Vec<
         (Kind::Products, false) => &PRODUCTS,
         _ => return None,
     };
-    modules.get(order.checked_sub(MIN_ORDER)?).map(|bytes| words(bytes))
+    let module = modules.get(order.checked_sub(MIN_ORDER)?)?;
+    let (bindings, constants) = (visibility_bindings(kind, normals), size_of::<VisibilityConstants>());
+    Some(Kernel::compute("shadow visibility", module, &bindings, constants))
 }
 
 /// The kernel over pixels.
-pub(crate) fn pixels(order: usize) -> Option<Vec<u32>> {
-    PIXELS.get(order.checked_sub(MIN_ORDER)?).map(|bytes| words(bytes))
+pub(crate) fn pixels(order: usize) -> Option<Kernel> {
+    let module = PIXELS.get(order.checked_sub(MIN_ORDER)?)?;
+    Some(Kernel::compute("shadow pixels", module, &PIXEL_BINDINGS, size_of::<PixelConstants>()))
 }
 
 /// The kernel over rows; `None` where there is none.
@@ -206,9 +210,4 @@ pub(crate) fn visibility_bindings(kind: Kind, normals: bool) -> Vec<BindingDesc>
         _ => true,
     };
     VISIBILITY_BINDINGS.into_iter().filter(read).collect()
-}
-
-/// Little-endian words of a module's bytes.
-fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }

@@ -2,14 +2,15 @@
 
 use airglow_gpu::ash::vk::Format;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, ComputePipelineDesc, Context, GpuError,
-    ImageView, Record, Recorder, Requirements,
+    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, Context, GpuError, ImageView, Kernel, Record,
+    Recorder, Requirements,
 };
 use airglow_graph::{Access, Graph, Handle, Image, ImageDesc, LeftOut, PassKind};
 use bytemuck::{Pod, Zeroable};
 
 use crate::ShadowError;
 use crate::blockers::Blockers;
+use crate::envelope::Pipelines;
 use crate::exponential::Exponential;
 use crate::kernels;
 use crate::light::{Disc, Products};
@@ -90,8 +91,19 @@ pub struct PixelLight {
 pub struct PixelShadow {
     settings: Settings,
     pipeline: ComputePipeline,
+    pipeline_count: usize,
     factors: Buffer,
     table: Buffer,
+}
+
+/// The kernel over pixels of settings in order.
+fn kernel(settings: &Settings) -> Result<Kernel, ShadowError> {
+    settings.check()?;
+    let kernel = kernels::pixels(settings.order).filter(|_| settings.exponential == Exponential::Adaptive);
+    kernel.ok_or_else(|| {
+        let (method, known) = (format!("{:?}", settings.exponential), "the default, per pixel");
+        ShadowError::Method { method, known }
+    })
 }
 
 impl PixelShadow {
@@ -109,22 +121,33 @@ impl PixelShadow {
     /// # Errors
     /// As [`Settings::check`]; [`ShadowError::Method`] for another exponential than the default; [`ShadowError::Gpu`].
     pub fn new(context: &Context, settings: Settings) -> Result<Self, ShadowError> {
-        settings.check()?;
-        let spirv = kernels::pixels(settings.order).filter(|_| settings.exponential == Exponential::Adaptive);
-        let Some(spirv) = spirv else {
-            let (method, known) = (format!("{:?}", settings.exponential), "the default, per pixel");
-            return Err(ShadowError::Method { method, known });
-        };
-        let desc = ComputePipelineDesc {
-            name: "shadow pixels",
-            spirv: &spirv,
-            bindings: &PIXEL_BINDINGS,
-            push_constant_size: size_of::<PixelConstants>() as u32,
-        };
-        let pipeline = context.create_compute_pipeline(&desc)?;
+        Self::with_pipeline(context, settings, kernel(&settings)?.compute_pipeline(context)?, 1)
+    }
+
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`ShadowError::Envelope`] for settings outside the envelope they were prepared for; else as [`PixelShadow::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        settings: Settings,
+        pipelines: &Pipelines,
+    ) -> Result<Self, ShadowError> {
+        let kernel = kernel(&settings)?;
+        pipelines.envelope().check_pixels(&settings)?;
+        Self::with_pipeline(context, settings, pipelines.compute(&kernel)?, pipelines.count())
+    }
+
+    /// With the pipeline of [`kernel`], one of so many that are ready.
+    fn with_pipeline(
+        context: &Context,
+        settings: Settings,
+        pipeline: ComputePipeline,
+        pipeline_count: usize,
+    ) -> Result<Self, ShadowError> {
         let factors = upload(context, "factors", &Tables::new(settings.order, settings.clip)?.logarithm)?;
         let table = upload(context, "exponential", &polynomial::table())?;
-        Ok(Self { settings, pipeline, factors, table })
+        Ok(Self { settings, pipeline, pipeline_count, factors, table })
     }
 
     /// Records the pass: no barrier before or after. The host has made the images ready for [`PIXEL_ACCESSES`].
@@ -199,7 +222,7 @@ impl PixelShadow {
             });
             return None;
         }
-        graph.pipelines("shadow", 1);
+        graph.pipelines("shadow", self.pipeline_count);
         let [(_, reads), _, (_, writes)] = PIXEL_ACCESSES;
         let mut pass = graph.pass("shadow pixels", PassKind::Compute);
         pass.read(&positions, reads).read(&normals, reads);

@@ -2,14 +2,15 @@
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{
-    Binding, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context, GpuError, Label, Location,
-    Recorder, Requirements,
+    Binding, Buffer, BufferSlice, ComputePipeline, Context, GpuError, Kernel, Label, Location, Recorder,
+    Requirements,
 };
 use airglow_graph::{Access, BufferDesc};
 use bytemuck::Pod;
 
 use crate::blockers::{Blockers, Range};
 use crate::clusters::{self, CLUSTER};
+use crate::envelope::Pipelines;
 use crate::kernels::{
     self, CLAMPED, CONTINUED, Kind, LOGARITHM, Program, VISIBILITY_BINDINGS, VisibilityConstants,
 };
@@ -48,6 +49,7 @@ pub struct Shadow {
     settings: Settings,
     program: Program,
     pipeline: ComputePipeline,
+    pipeline_count: usize,
     factors: Buffer,
     /// Of the exponential, and its end; `None` for the rival.
     table: Option<(Buffer, f32)>,
@@ -105,6 +107,22 @@ impl Shadow {
         Self::with_program(context, settings, Program::of(settings.exponential))
     }
 
+    /// The same with pipelines that were made before, on whatever thread: none is made here or while recording.
+    ///
+    /// # Errors
+    /// [`ShadowError::Envelope`] for settings outside the envelope they were prepared for; else as [`Shadow::new`].
+    pub fn with_pipelines(
+        context: &Context,
+        settings: Settings,
+        pipelines: &Pipelines,
+    ) -> Result<Self, ShadowError> {
+        settings.check()?;
+        pipelines.envelope().check(&settings)?;
+        let program = Program::of(settings.exponential);
+        let pipeline = pipelines.compute(&kernel(&settings, program)?)?;
+        Self::with_pipeline(context, settings, program, pipeline, pipelines.count())
+    }
+
     /// The rival: products of the spheres' visibilities, one after the other.
     pub(crate) fn products(context: &Context, settings: Settings) -> Result<Self, ShadowError> {
         Self::with_program(context, settings, Program::without_constants(Kind::Products))
@@ -120,17 +138,18 @@ impl Shadow {
 
     fn with_program(context: &Context, settings: Settings, program: Program) -> Result<Self, ShadowError> {
         check_order(settings.order)?;
-        let Some(spirv) = kernels::visibility(program.kind, settings.order, settings.normals) else {
-            let (method, known) = (format!("{:?}", settings.exponential), "one with a kernel over receivers");
-            return Err(ShadowError::Method { method, known });
-        };
-        let desc = ComputePipelineDesc {
-            name: "shadow visibility",
-            spirv: &spirv,
-            bindings: &kernels::visibility_bindings(program.kind, settings.normals),
-            push_constant_size: size_of::<VisibilityConstants>() as u32,
-        };
-        let pipeline = context.create_compute_pipeline(&desc)?;
+        let pipeline = kernel(&settings, program)?.compute_pipeline(context)?;
+        Self::with_pipeline(context, settings, program, pipeline, 1)
+    }
+
+    /// With the pipeline of [`kernel`], one of so many that are ready.
+    fn with_pipeline(
+        context: &Context,
+        settings: Settings,
+        program: Program,
+        pipeline: ComputePipeline,
+        pipeline_count: usize,
+    ) -> Result<Self, ShadowError> {
         let tables = Tables::new(settings.order, settings.clip)?;
         let factors = match program.kind {
             Kind::Products => &tables.visibility,
@@ -141,7 +160,12 @@ impl Shadow {
             Some((values, end)) => Some((upload(context, "exponential", &values)?, end)),
             None => None,
         };
-        Ok(Self { settings, program, pipeline, factors, table, logarithm: false })
+        Ok(Self { settings, program, pipeline, pipeline_count, factors, table, logarithm: false })
+    }
+
+    /// Pipelines that it and its like hold ready.
+    pub(crate) fn pipeline_count(&self) -> usize {
+        self.pipeline_count
     }
 
     /// What it was made for.
@@ -263,6 +287,14 @@ impl Shadow {
             first,
         }
     }
+}
+
+/// The kernel over receivers of a program.
+fn kernel(settings: &Settings, program: Program) -> Result<Kernel, ShadowError> {
+    kernels::visibility(program.kind, settings.order, settings.normals).ok_or_else(|| {
+        let (method, known) = (format!("{:?}", settings.exponential), "one with a kernel over receivers");
+        ShadowError::Method { method, known }
+    })
 }
 
 fn long_enough(buffer: &BufferSlice, bytes: u64) -> Result<(), GpuError> {

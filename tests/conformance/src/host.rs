@@ -98,7 +98,11 @@ impl<'a> Host<'a> {
 
     /// The device as a room is told of it, with `shim` listening.
     pub(super) fn told(&self, shim: &Shim) -> HostDevice<'a> {
-        HostDevice { get_device_proc_addr: shim.get_device_proc_addr(), ..self.stated }
+        HostDevice {
+            get_device_proc_addr: shim.get_device_proc_addr(),
+            get_instance_proc_addr: shim.get_instance_proc_addr(),
+            ..self.stated
+        }
     }
 
     /// A context on the device, with `shim` listening.
@@ -138,9 +142,20 @@ impl<'a> Host<'a> {
         options: &Options,
         road: Road,
     ) -> Result<(Outputs, Vec<Call>), Refusal> {
-        let shim = self.watch();
-        let adopt = || self.adopt(&shim, requirements, options, 1);
-        let done = self.frame_of(&shim, adopt, make, (road, Execution::prepare), true)?;
+        self.run_under(&self.watch(), make, requirements, options, road)
+    }
+
+    /// The same under a watch.
+    pub(super) fn run_under<R: Room>(
+        &self,
+        shim: &Shim,
+        make: impl Fn(&Context, &HostDevice<'_>) -> Result<R, Refusal>,
+        requirements: &Requirements,
+        options: &Options,
+        road: Road,
+    ) -> Result<(Outputs, Vec<Call>), Refusal> {
+        let adopt = || self.adopt(shim, requirements, options, 1);
+        let done = self.frame_of(shim, adopt, make, (road, Execution::prepare), true)?;
         match shim.alive() {
             alive if alive.is_empty() => Ok(done),
             alive => Err(format!("{road:?} left alive: {alive:?}").into()),
@@ -158,11 +173,23 @@ impl<'a> Host<'a> {
     ) -> Result<(Outputs, Vec<Call>), Refusal> {
         let mut held = Vec::new();
         let context = adopt()?;
-        let mut room = make(&context, &self.told(shim))?;
+        let room = make(&context, &self.told(shim))?;
+        self.frame_in(&context, shim, room, (road, prepare, submit), &mut held)
+    }
+
+    /// Records one frame of a room that was made in `context`; what the host made for it goes to `held`.
+    pub(super) fn frame_in<'h, R: Room>(
+        &'h self,
+        context: &Context,
+        shim: &Shim,
+        mut room: R,
+        (road, prepare, submit): (Road, Prepare, bool),
+        held: &mut Vec<Held<'h>>,
+    ) -> Result<(Outputs, Vec<Call>), Refusal> {
         let resources = room.resources();
-        let given = self.give(&context, &resources, &mut held)?;
+        let given = self.give(context, &resources, held)?;
         let (mut calls, mut execution) = (Vec::new(), None);
-        let outputs = self.frame(&context, submit, |recorder| {
+        let outputs = self.frame(context, submit, |recorder| {
             for (resource, given) in resources.iter().zip(&given) {
                 fill(recorder, resource, given, resource.entry)?;
             }

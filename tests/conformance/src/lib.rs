@@ -10,8 +10,10 @@ mod faults;
 mod host;
 mod orders;
 pub mod plan;
+mod prepared;
 mod roads;
 pub mod shim;
+mod staged;
 
 use crate::shim::{ACTIONS, Call, STATE};
 use airglow_gpu::ash::vk;
@@ -25,6 +27,8 @@ pub use declared::{Declared, Named, copy_mips};
 pub use faults::fail_on;
 pub use host::HostDevice;
 pub use orders::shuffle_on;
+pub use prepared::{MakePrepared, prepare_on};
+pub use staged::stage_on;
 
 /// What a room says when it refuses, or the kit of what it found.
 pub type Refusal = Box<dyn Error>;

@@ -4,6 +4,7 @@
 //! Vulkan passes no user data to its functions, so there is one watch in a process; [`Shim`] holds it exclusively.
 
 mod kept;
+mod memory;
 mod table;
 
 use crate::HostDevice;
@@ -73,7 +74,11 @@ struct Watch {
     /// The call that failed last.
     failed: Option<&'static str>,
     kept: kept::Kept,
+    separate: memory::Separate,
 }
+
+/// The loader's function, kept beside the device's.
+const LOADER: &str = "vkGetInstanceProcAddr";
 
 static WATCH: Mutex<Option<Watch>> = Mutex::new(None);
 static TURN: Mutex<()> = Mutex::new(());
@@ -128,6 +133,7 @@ unsafe extern "system" fn get_device_proc_addr(
 
 /// The watch over one device. Contexts that were adopted through it are dropped first.
 pub struct Shim {
+    get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
     device: vk::Device,
     _turn: MutexGuard<'static, ()>,
 }
@@ -157,7 +163,7 @@ impl Shim {
         let turn = lock(&TURN);
         let (get, get_instance) = (host.get_device_proc_addr, host.get_instance_proc_addr);
         let (device, instance) = (host.device, host.instance);
-        let mut real = BTreeMap::new();
+        let mut real = BTreeMap::from([(LOADER, get_instance as usize)]);
         for (name, c_name) in table::names() {
             // SAFETY: live handles with their own functions.
             let found =
@@ -165,12 +171,31 @@ impl Shim {
             real.extend(found.map(|function| (name, function as usize)));
         }
         watch(|watch| *watch = Watch { real, ..Watch::default() });
-        Self { device, _turn: turn }
+        Self { get_instance_proc_addr: get_instance, device, _turn: turn }
     }
 
     /// What to hand to [`airglow_gpu::AdoptInfo::get_device_proc_addr`].
     pub fn get_device_proc_addr(&self) -> vk::PFN_vkGetDeviceProcAddr {
         get_device_proc_addr
+    }
+
+    /// What to hand to [`airglow_gpu::AdoptInfo::get_instance_proc_addr`].
+    pub fn get_instance_proc_addr(&self) -> vk::PFN_vkGetInstanceProcAddr {
+        match watch(|watch| watch.separate.is_told()) {
+            true => memory::get_instance_proc_addr,
+            false => self.get_instance_proc_addr,
+        }
+    }
+
+    /// From now on no memory is both the device's and the CPU's: what is told of memory is of two types, and the CPU maps
+    /// none of the first. `memory` is what the device truly has. False where it has nothing that can stand for both.
+    pub fn separate_memory(&self, memory: &vk::PhysicalDeviceMemoryProperties) -> bool {
+        watch(|watch| watch.separate.begin(memory))
+    }
+
+    /// With separate memory: allocations that the device alone reaches, and those that the CPU maps.
+    pub fn separate_allocations(&self) -> [u64; 2] {
+        watch(|watch| watch.separate.made())
     }
 
     /// The commands recorded since the last call.

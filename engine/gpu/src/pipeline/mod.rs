@@ -6,7 +6,9 @@
 
 mod compute;
 mod graphics;
+mod kernel;
 mod layout;
+mod prepared;
 mod spirv;
 
 pub use compute::{ComputePipeline, ComputePipelineDesc};
@@ -14,5 +16,7 @@ pub use graphics::{
     Blend, DepthState, GraphicsPipeline, GraphicsPipelineDesc, VertexAttribute, VertexBufferLayout,
 };
 pub(crate) use graphics::{MAX_COLORS, MAX_VERTEX_BUFFERS};
+pub use kernel::{Kernel, Stages, words};
 pub(crate) use layout::PipelineCore;
 pub use layout::{BindingDesc, BindingKind, MAX_BINDINGS};
+pub use prepared::{Outside, Permutations, Pipelines};

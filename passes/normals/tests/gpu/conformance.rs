@@ -2,12 +2,13 @@
 
 use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout};
 use airglow_gpu::requirements::Limit;
-use airglow_gpu::{Context, DeviceMask, Image, Options, Recorder, Requirements};
+use airglow_gpu::{Context, DeviceMask, Image, Options, Permutations, Recorder, Requirements};
 use airglow_graph::{Access, State};
-use airglow_normals::{Build, FitSettings, Normals, Resource, Settings, Storage};
+use airglow_normals::{Build, Envelope, FitSettings, Normals, Pipelines, Resource, Settings, Storage};
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, Outputs, Refusal, Room, change, conform, copy_mips, fail_each, shuffle,
+    Declared, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform, copy_mips,
+    fail_each, prepare, shuffle, stage,
 };
 use airglow_tests::narrow;
 
@@ -27,8 +28,11 @@ impl Built {
     }
 
     fn with(context: &Context, settings: Settings) -> Result<Self, Refusal> {
-        let build = Normals::new(context, settings)?.build(context, &common::weave(16))?;
-        Ok(Self { settings, build })
+        Self::of(context, &Normals::new(context, settings)?)
+    }
+
+    fn of(context: &Context, normals: &Normals) -> Result<Self, Refusal> {
+        Ok(Self { settings: *normals.settings(), build: normals.build(context, &common::weave(16))? })
     }
 
     fn image(&self) -> Result<&Image, Refusal> {
@@ -84,6 +88,8 @@ fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads_and_on_a_lesser_o
     let limits = vec![(Limit::StorageBufferRange, 16 << 10)];
     let mask = DeviceMask { limits, without_optional_features: true };
     assert!(outputs(&Options { mask, breadcrumbs: true, ..Options::default() }) == whole);
+    let staged = stage(Built::new, &Normals::requirements(&SETTINGS()));
+    assert!(staged == whole, "a device whose memory the CPU cannot map");
 }
 
 /// Sums that are rounded otherwise may end in another fit; half a percent of the largest lobe is what storage loses.
@@ -105,6 +111,37 @@ fn every_call_that_fails_is_told_and_leaves_nothing() {
     let calls = fail_each(|context| Built::with(context, small), &Normals::requirements(&small));
     println!("{calls} calls failed in turn");
     assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn nothing_within_the_envelope_makes_a_pipeline() {
+    let envelope = || Envelope { lobes: vec![1, 2, 4], storages: vec![Storage::F16, Storage::Octahedral8] };
+    let of = |lobes| envelope().storages.into_iter().map(move |storage| (lobes, storage));
+    let all: Vec<_> = envelope().lobes.into_iter().flat_map(of).collect();
+    let settings = |&(lobes, storage)| Settings {
+        fit: FitSettings { lobes, ..FitSettings::default() },
+        storage,
+        ..Settings::default()
+    };
+    let make = |settings| {
+        move |context: &Context, pipelines: &Pipelines| {
+            Built::of(context, &Normals::with_pipelines(settings, pipelines)?)
+        }
+    };
+    let makes: Vec<_> = all.iter().map(settings).map(make).collect();
+    let makes: Vec<MakePrepared<'_, _, _>> = makes.iter().map(|make| make as _).collect();
+    let count = envelope().pipeline_count().unwrap();
+    let requirements = all
+        .iter()
+        .map(settings)
+        .fold(Requirements::engine(), |all, settings| all.and(&Normals::requirements(&settings)));
+    let made = prepare(&requirements, |context| Pipelines::prepare(context, envelope()), count, &makes);
+    println!("{made} pipelines for {} settings", makes.len());
+    // Fits by lobes, one lobe needs no order, packing by storage.
+    assert_eq!((made, makes.len()), (3 + 2 + 2, 6));
+    let six = Settings { fit: FitSettings { lobes: 6, ..FitSettings::default() }, ..SETTINGS() };
+    let outside = envelope().check(&six).unwrap_err().to_string();
+    assert!(outside.contains("6 lobes") && outside.contains("Envelope::lobes"), "{outside}");
 }
 
 #[test]

@@ -6,8 +6,8 @@ use airglow_graph::{Access, BufferDesc};
 use bytemuck::Pod;
 use glam::DVec3;
 
-use super::{Batch, EmitterSphere, EmitterTriangle, LightShape, TexelBuffers, Texels};
-use crate::{Incident, Lights, RadianceError, Triangle, check, check_spheres};
+use super::{Batch, EmitterSphere, EmitterTriangle, LightShape, Surfaces, TexelBuffers, Texels};
+use crate::{Incident, Lights, RadianceError, Triangle};
 
 const OWNER: &str = "radiance";
 
@@ -113,8 +113,7 @@ impl Bench<'_> {
         lights: &Lights<'_>,
         points: &[DVec3],
     ) -> Result<Vec<Sampled>, RadianceError> {
-        check(lights.emitters)?;
-        check_spheres(lights.spheres)?;
+        lights.check()?;
         let shape = texels.settings().shape;
         let buffers = self.buffers_of(shape, lights, points)?;
         (self.run)(&mut |recorder| texels.record(recorder, &buffers))?;
@@ -151,6 +150,7 @@ impl Bench<'_> {
     ) -> Result<TexelBuffers, RadianceError> {
         let packed: Vec<EmitterTriangle> = lights.triangles().iter().map(EmitterTriangle::from).collect();
         let spheres: Vec<EmitterSphere> = lights.spheres.iter().map(EmitterSphere::from).collect();
+        let surfaces = Surfaces::new(lights)?;
         let positions: Vec<[f32; 4]> = points.iter().map(|p| p.extend(0.0).as_vec4().to_array()).collect();
         Ok(TexelBuffers {
             batch: (&self.upload("batch", &[Batch::new(0, points.len() as u32)])?).into(),
@@ -160,6 +160,10 @@ impl Bench<'_> {
             spheres: (&self.upload("spheres", &spheres)?).into(),
             sphere_count: spheres.len() as u32,
             flat_count: lights.emitters.len() as u32,
+            surfaces: (&self.upload("surfaces", &surfaces.shown)?).into(),
+            shown_count: surfaces.count,
+            pictures: (&self.upload("pictures", &surfaces.texels)?).into(),
+            extinction: surfaces.extinction,
             kept: false,
             lights: (&self.scratch("lights", shape.light_bytes(points.len()))?).into(),
             gradients: (&self.scratch("gradients", shape.gradient_bytes(points.len()))?).into(),

@@ -68,7 +68,7 @@ impl Global {
         let module = module.ok_or_else(|| RadianceError::setting("order", shape.order, "3 to 6 bands"))?;
         let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
             name: "radiance global",
-            spirv: &super::words(module),
+            spirv: &airglow_gpu::words(module),
             bindings: &GLOBAL_BINDINGS,
             push_constant_size: size_of::<Constants>() as u32,
         })?;

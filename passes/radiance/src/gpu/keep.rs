@@ -1,8 +1,8 @@
 //! Samples of the frame before, kept where emitters have moved too little to matter.
 
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context,
-    GpuError, Recorder,
+    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, Context, GpuError, Kernel,
+    Recorder,
 };
 use airglow_graph::Access;
 use bytemuck::{Pod, Zeroable};
@@ -86,6 +86,11 @@ impl OldSamples {
     }
 }
 
+/// The kernel of [`Keep`].
+pub(crate) fn kernel() -> Kernel {
+    Kernel::compute("radiance keep", KEEP, &KEEP_BINDINGS, size_of::<KeepConstants>())
+}
+
 /// The kernel that keeps samples.
 #[derive(Clone)]
 pub struct Keep {
@@ -99,13 +104,12 @@ impl Keep {
     /// # Errors
     /// [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, shape: LightShape) -> Result<Self, RadianceError> {
-        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "radiance keep",
-            spirv: &super::words(KEEP),
-            bindings: &KEEP_BINDINGS,
-            push_constant_size: size_of::<KeepConstants>() as u32,
-        })?;
-        Ok(Self { pipeline, shape })
+        Ok(Self::with_pipeline(kernel().compute_pipeline(context)?, shape))
+    }
+
+    /// With the pipeline of [`kernel`].
+    pub(crate) fn with_pipeline(pipeline: ComputePipeline, shape: LightShape) -> Self {
+        Self { pipeline, shape }
     }
 
     /// Records a look at the batch: samples whose light may have changed, weighed by their node, by no more than `allowed` in

@@ -1,9 +1,9 @@
 //! The sampling kernels of this room and their bindings, stated once.
 
-use airglow_gpu::{BindingDesc, BindingKind};
+use airglow_gpu::{BindingDesc, BindingKind, Kernel};
 use bytemuck::{Pod, Zeroable};
 
-use super::{LightShape, words};
+use super::{LightShape, TexelSettings};
 use crate::RadianceError;
 
 macro_rules! rays {
@@ -47,9 +47,10 @@ const fn storage(binding: u32) -> BindingDesc {
     BindingDesc::new(binding, BindingKind::StorageBuffer)
 }
 
-/// Bindings of `texels.comp`: batch, points, triangles, solid angles, lights, and gradients where there are any.
-pub const TEXEL_BINDINGS: [BindingDesc; 6] =
-    [storage(0), storage(1), storage(2), storage(3), storage(4), storage(5)];
+/// Bindings of `texels.comp`: batch, points, triangles, solid angles, lights, surfaces, pictures, and gradients where there are
+/// any.
+pub const TEXEL_BINDINGS: [BindingDesc; 8] =
+    [storage(0), storage(1), storage(2), storage(3), storage(4), storage(5), storage(6), storage(7)];
 
 /// `Settings` of `texels.comp`.
 #[repr(C)]
@@ -61,6 +62,16 @@ pub struct TexelConstants {
     pub size: u32,
     /// 1: samples that are exact already, or kept, are left alone.
     pub keep_exact: u32,
+    /// Triangles from it on show pictures.
+    pub shown_first: u32,
+    /// How many of them.
+    pub shown_count: u32,
+    /// Extinction of the medium between, 1/m.
+    pub red: f32,
+    /// The same.
+    pub green: f32,
+    /// The same.
+    pub blue: f32,
 }
 
 /// Bindings of `analytic.comp`: batch, points, triangles, lights, spheres, and gradients where there are any.
@@ -83,17 +94,21 @@ pub struct AnalyticConstants {
 }
 
 /// The kernel of a shape and number of rays.
-pub(super) fn texels(shape: LightShape, rays: u32) -> Result<Vec<u32>, RadianceError> {
-    let kernels = of_shape(&TEXELS, shape)?;
-    match rays {
-        1 | 2 | 4 => Ok(words(kernels[rays.ilog2() as usize])),
-        _ => Err(RadianceError::setting("rays", rays, "1, 2 or 4 along a side of a texel")),
-    }
+pub(crate) fn texels(settings: TexelSettings) -> Result<Kernel, RadianceError> {
+    let TexelSettings { shape, rays, .. } = settings;
+    let module = match (of_shape(&TEXELS, shape)?, rays) {
+        (kernels, 1 | 2 | 4) => kernels[rays.ilog2() as usize],
+        _ => return Err(RadianceError::setting("rays", rays, "1, 2 or 4 along a side of a texel")),
+    };
+    let bindings = &TEXEL_BINDINGS[..7 + usize::from(shape.gradients)];
+    Ok(Kernel::compute("radiance texels", module, bindings, size_of::<TexelConstants>()))
 }
 
 /// The closed forms of a shape.
-pub(super) fn analytic(shape: LightShape) -> Result<Vec<u32>, RadianceError> {
-    of_shape(&ANALYTIC, shape).map(|bytes| words(bytes))
+pub(crate) fn analytic(shape: LightShape) -> Result<Kernel, RadianceError> {
+    let bindings = &ANALYTIC_BINDINGS[..5 + usize::from(shape.gradients)];
+    let module = *of_shape(&ANALYTIC, shape)?;
+    Ok(Kernel::compute("radiance closed forms", module, bindings, size_of::<AnalyticConstants>()))
 }
 
 fn of_shape<T>(kernels: &[[T; 4]; 2], shape: LightShape) -> Result<&T, RadianceError> {

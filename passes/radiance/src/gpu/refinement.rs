@@ -1,8 +1,6 @@
 //! Refinement on the device: rounds of oracle and samples, none of which the CPU waits for.
 
-use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc,
-};
+use airglow_gpu::{Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, Kernel};
 use airglow_gpu::{Context, GpuError, Recorder};
 use bytemuck::{Pod, Zeroable};
 
@@ -77,6 +75,11 @@ pub struct SampleBuffers {
     pub state: Buffer,
 }
 
+/// The kernel of [`Refinement`].
+pub(crate) fn kernel() -> Kernel {
+    Kernel::compute("radiance refine", REFINE, &REFINE_BINDINGS, REFINE_CONSTANTS as usize)
+}
+
 /// The kernel that decides where to sample next.
 #[derive(Clone)]
 pub struct Refinement {
@@ -90,13 +93,12 @@ impl Refinement {
     /// # Errors
     /// [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, shape: LightShape) -> Result<Self, RadianceError> {
-        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "radiance refine",
-            spirv: &super::words(REFINE),
-            bindings: &REFINE_BINDINGS,
-            push_constant_size: REFINE_CONSTANTS,
-        })?;
-        Ok(Self { pipeline, shape })
+        Ok(Self::with_pipeline(kernel().compute_pipeline(context)?, shape))
+    }
+
+    /// With the pipeline of [`kernel`].
+    pub(crate) fn with_pipeline(pipeline: ComputePipeline, shape: LightShape) -> Self {
+        Self { pipeline, shape }
     }
 
     /// Records one round: with `seed` it asks for the first sample, of the root; else it looks at those of the last

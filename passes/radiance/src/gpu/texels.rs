@@ -2,8 +2,8 @@
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{
-    Binding, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context, GpuError, Label, Location,
-    Recorder, Requirements,
+    Binding, Buffer, BufferSlice, ComputePipeline, Context, GpuError, Kernel, Label, Location, Recorder,
+    Requirements,
 };
 use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::cube::SolidAngles;
@@ -40,8 +40,16 @@ pub struct TexelBuffers {
     pub spheres: BufferSlice,
     /// How many of them.
     pub sphere_count: u32,
-    /// Triangles that are no part of a sphere.
+    /// Triangles of uniform radiance that are no part of a sphere: the first ones.
     pub flat_count: u32,
+    /// [`DeviceSurface`](super::DeviceSurface)s: what the next ones show.
+    pub surfaces: BufferSlice,
+    /// How many of them.
+    pub shown_count: u32,
+    /// Texels of the pictures, a vec4 each.
+    pub pictures: BufferSlice,
+    /// Extinction of the medium between, 1/m, RGB.
+    pub extinction: [f32; 3],
     /// Whether samples whose records say that they were kept are left alone.
     pub kept: bool,
     /// Takes the light of each sample, as [`LightShape`] says.
@@ -72,16 +80,20 @@ impl Texels {
     /// # Errors
     /// [`RadianceError::Setting`] for settings without kernel; [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, settings: TexelSettings) -> Result<Self, RadianceError> {
-        let TexelSettings { shape, size, rays } = settings;
+        Self::with_kernel(context, settings, |kernel| kernel.compute_pipeline(context))
+    }
+
+    /// The same with a pipeline that `find` has for the kernel.
+    pub(crate) fn with_kernel(
+        context: &Context,
+        settings: TexelSettings,
+        find: impl Fn(&Kernel) -> Result<ComputePipeline, GpuError>,
+    ) -> Result<Self, RadianceError> {
+        let size = settings.size;
         if !(1..=512).contains(&size) {
             return Err(RadianceError::setting("face size", size, "1 to 512 texels"));
         }
-        let pipeline = context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "radiance texels",
-            spirv: &kernels::texels(shape, rays)?,
-            bindings: &TEXEL_BINDINGS[..5 + usize::from(shape.gradients)],
-            push_constant_size: size_of::<TexelConstants>() as u32,
-        })?;
+        let pipeline = find(&kernels::texels(settings)?)?;
         let solid_angles = solid_angles(context, size as usize)?;
         Ok(Self { settings, pipeline, analytic: None, solid_angles })
     }
@@ -91,15 +103,14 @@ impl Texels {
     ///
     /// # Errors
     /// [`RadianceError::Gpu`] when the device refuses.
-    pub fn with_closed_forms(mut self, context: &Context) -> Result<Self, RadianceError> {
-        let shape = self.settings.shape;
-        self.analytic = Some(context.create_compute_pipeline(&ComputePipelineDesc {
-            name: "radiance closed forms",
-            spirv: &kernels::analytic(shape)?,
-            bindings: &ANALYTIC_BINDINGS[..5 + usize::from(shape.gradients)],
-            push_constant_size: size_of::<AnalyticConstants>() as u32,
-        })?);
-        Ok(self)
+    pub fn with_closed_forms(self, context: &Context) -> Result<Self, RadianceError> {
+        let analytic = kernels::analytic(self.settings.shape)?.compute_pipeline(context)?;
+        Ok(self.with_analytic(analytic))
+    }
+
+    /// The same with the pipeline of [`kernels::analytic`].
+    pub(crate) fn with_analytic(self, analytic: ComputePipeline) -> Self {
+        Self { analytic: Some(analytic), ..self }
     }
 
     /// The same, that samples by cube maps alone.
@@ -120,9 +131,10 @@ impl Texels {
     /// # Errors
     /// [`GpuError::Misuse`] for buffers that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, buffers: &TexelBuffers) -> Result<(), GpuError> {
-        let TexelBuffers { triangle_count, flat_count, sphere_count, kept, .. } = *buffers;
+        let TexelBuffers { triangle_count, flat_count, sphere_count, kept, shown_count, extinction, .. } = *buffers;
         let bodies = flat_count.saturating_add(sphere_count);
-        let analytic = self.analytic.as_ref().filter(|_| bodies <= MOST_ANALYTIC);
+        let plain = shown_count == 0 && extinction == [0.0; 3];
+        let analytic = self.analytic.as_ref().filter(|_| bodies <= MOST_ANALYTIC && plain);
         if let Some(pipeline) = analytic {
             let slices = [
                 &buffers.batch,
@@ -144,6 +156,8 @@ impl Texels {
             &buffers.triangles,
             &(&self.solid_angles).into(),
             &buffers.lights,
+            &buffers.surfaces,
+            &buffers.pictures,
             &buffers.gradients,
         ];
         self.bind(recorder, &self.pipeline, &slices)?;
@@ -151,6 +165,11 @@ impl Texels {
             triangle_count,
             size: self.settings.size,
             keep_exact: (analytic.is_some() || kept).into(),
+            shown_first: flat_count,
+            shown_count,
+            red: extinction[0],
+            green: extinction[1],
+            blue: extinction[2],
         })?;
         recorder.dispatch_indirect(buffers.batch.clone())
     }

@@ -1,8 +1,8 @@
 //! Light vectors of vertices from samples, on the device.
 
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, ComputePipelineDesc, Context,
-    GpuError, Recorder,
+    Binding, BindingDesc, BindingKind, Buffer, BufferSlice, ComputePipeline, Context, GpuError, Kernel,
+    Recorder,
 };
 use airglow_math::sh::rotation::Rotation;
 use bytemuck::{Pod, Zeroable};
@@ -85,6 +85,17 @@ struct Constants {
 /// Bytes of the push constants of [`module`].
 pub const CONSTANTS: u32 = size_of::<Constants>() as u32;
 
+/// Light from samples, and its turning into the space of an instance.
+pub(crate) fn kernels(shape: LightShape) -> Result<[Kernel; 2], RadianceError> {
+    let (Some(light), Some(turn)) = (module(shape), turn_module(shape.order)) else {
+        return Err(RadianceError::setting("order", shape.order, "3 to 6 bands"));
+    };
+    Ok([
+        Kernel::compute("radiance vertices", light, &bindings(shape), CONSTANTS as usize),
+        Kernel::compute("radiance turn", turn, &TURN_BINDINGS, 4),
+    ])
+}
+
 /// The kernels over vertices.
 #[derive(Clone)]
 pub struct VertexKernels {
@@ -124,15 +135,16 @@ impl VertexKernels {
     /// # Errors
     /// [`RadianceError::Setting`] for an order but 3 to 6; [`RadianceError::Gpu`] when the device refuses.
     pub fn new(context: &Context, shape: LightShape) -> Result<Self, RadianceError> {
-        let make = |name, module: Option<&[u8]>, bindings: &[BindingDesc], push_constant_size| {
-            let refused = || RadianceError::setting("order", shape.order, "3 to 6 bands");
-            let spirv = &super::words(module.ok_or_else(refused)?);
-            let desc = ComputePipelineDesc { name, spirv, bindings, push_constant_size };
-            Ok::<_, RadianceError>(context.create_compute_pipeline(&desc)?)
-        };
-        let light = make("radiance vertices", module(shape), &bindings(shape), CONSTANTS)?;
-        let turn = make("radiance turn", turn_module(shape.order), &TURN_BINDINGS, 4)?;
-        Ok(Self { shape, light, turn })
+        Self::with_kernels(shape, |kernel| kernel.compute_pipeline(context))
+    }
+
+    /// The same with pipelines that `find` has for the kernels.
+    pub(crate) fn with_kernels(
+        shape: LightShape,
+        find: impl Fn(&Kernel) -> Result<ComputePipeline, GpuError>,
+    ) -> Result<Self, RadianceError> {
+        let [light, turn] = kernels(shape)?;
+        Ok(Self { shape, light: find(&light)?, turn: find(&turn)? })
     }
 
     /// Records the light of some vertices. The barriers before and after are the caller's.

@@ -4,14 +4,16 @@ use std::sync::LazyLock;
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::requirements::Limit;
-use airglow_gpu::{Context, DeviceMask, Options, Recorder, Requirements};
+use airglow_gpu::{Context, DeviceMask, Options, Permutations, Recorder, Requirements};
 use airglow_graph::Access;
 use airglow_radiance::{
-    Bindings, Lights, Part, PassSettings, Prepared, Radiance, Receiver, Resource, Settings,
+    Bindings, Envelope, Lights, Part, PassSettings, Pipelines, Prepared, Radiance, Receiver, Resource,
+    Settings,
 };
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, Outputs, Refusal, Room, change, conform, fail_each, shuffle,
+    Declared, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform, fail_each, prepare,
+    shuffle,
 };
 use airglow_tests::narrow;
 use glam::DMat3;
@@ -39,6 +41,11 @@ impl Lit {
     }
 
     fn with(context: &Context, settings: PassSettings) -> Result<Self, Refusal> {
+        Self::of(context, Radiance::new(context, settings)?)
+    }
+
+    fn of(context: &Context, radiance: Radiance) -> Result<Self, Refusal> {
+        let settings = *radiance.settings();
         static MESH: LazyLock<Mesh> = LazyLock::new(|| Mesh::ball(12, 3, false));
         let mesh = &*MESH;
         let parts = [
@@ -46,7 +53,6 @@ impl Lit {
             Part { vertices: 70..144, turn: Some(DMat3::from_rotation_x(0.4)) },
         ];
         let receiver = Receiver::new(context, settings, &mesh.tree, &mesh.positions, &parts)?;
-        let radiance = Radiance::new(context, settings)?;
         let sizes = parts.iter().map(|part| settings.light_bytes() * part.vertices.len() as u64);
         Ok(Self { radiance, receiver, sizes: sizes.collect(), prepared: None })
     }
@@ -129,6 +135,38 @@ fn every_call_that_fails_is_told_and_leaves_nothing() {
     let calls = fail_each(|context| Lit::with(context, small), &Radiance::requirements(&small));
     println!("{calls} calls failed in turn");
     assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn nothing_within_the_envelope_makes_a_pipeline() {
+    let envelope = || Envelope {
+        orders: vec![3, 4],
+        gradients: vec![false, true],
+        rays: vec![1, 2],
+        closed_forms: true,
+    };
+    let make = |settings: PassSettings| {
+        let settings = PassSettings { refinement: SETTINGS().refinement, ..settings };
+        move |context: &Context, pipelines: &Pipelines| {
+            Lit::of(context, Radiance::with_pipelines(context, settings, pipelines)?)
+        }
+    };
+    let plain =
+        |settings: PassSettings| [settings, PassSettings { closed_forms: false, face: 16, ..settings }];
+    // Each of the first two with less beside it; the others are of the same kernels.
+    let mut all = envelope().settings();
+    all.splice(0..2, [plain(all[0]), plain(all[1])].concat());
+    let makes: Vec<_> = all.into_iter().map(make).collect();
+    let makes: Vec<MakePrepared<'_, _, _>> = makes.iter().map(|make| make as _).collect();
+    let count = envelope().pipeline_count().unwrap();
+    let requirements =
+        Radiance::requirements(&PassSettings::default()).and(&Radiance::requirements(&SETTINGS()));
+    let made = prepare(&requirements, |context| Pipelines::prepare(context, envelope()), count, &makes);
+    println!("{made} pipelines for {} settings", makes.len());
+    // Refining and keeping; by order turning; by order and gradients two of texels, one in closed form, one of vertices.
+    assert_eq!((made, makes.len()), (2 + 2 + 4 * 4, 10));
+    let outside = envelope().check(&PassSettings { rays: 4, ..SETTINGS() }).unwrap_err().to_string();
+    assert!(outside.contains("4 rays") && outside.contains("Envelope::rays"), "{outside}");
 }
 
 #[test]

@@ -96,4 +96,4 @@ pub(super) static INCIDENT_DYNAMIC: [ByOrder; 2] =
 /// By light.
 pub(super) static INCIDENT_OPEN: [ByOrder; 2] =
     [by_order!("incident_open.uniform", ""), by_order!("incident_open.vertex", "")];
-pub(super) static RECTANGLE_VERTEX: &[u8] = module!("rectangle");
+pub(crate) static RECTANGLE_VERTEX: &[u8] = module!("rectangle");

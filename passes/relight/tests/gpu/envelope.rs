@@ -1,6 +1,7 @@
 //! What may be needed is prepared ahead, on another thread; frames and changes of quality within it make no pipeline.
 
 use crate::host::{Numbers, with_bench};
+use airglow_gpu::Permutations;
 use airglow_relight::{
     Bench, Case, CaseLight, Envelope, LightKind, MAX_ORDER, Method, Output, Pipelines, Relight, RelightError,
     Settings, Storage,

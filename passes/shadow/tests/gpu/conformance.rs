@@ -2,12 +2,15 @@
 
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::requirements::Limit;
-use airglow_gpu::{Context, DeviceMask, Options, Recorder, Requirements};
+use airglow_gpu::{Context, DeviceMask, Options, Permutations, Recorder, Requirements};
 use airglow_graph::Access;
-use airglow_shadow::{ACCESSES, Bindings, Blockers, Receivers, Settings, Shadow};
+use airglow_shadow::{
+    ACCESSES, Bindings, Blockers, Envelope, Exponential, Pipelines, PixelShadow, Receivers, Settings, Shadow,
+};
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, Outputs, Refusal, Room, change, conform, fail_each, shuffle,
+    Declared, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform, fail_each, prepare,
+    shuffle,
 };
 use airglow_tests::narrow;
 use glam::DMat4;
@@ -30,7 +33,10 @@ impl Shadowed {
     }
 
     fn with(context: &Context, settings: Settings) -> Result<Self, Refusal> {
-        let shadow = Shadow::new(context, settings)?;
+        Self::of(context, Shadow::new(context, settings)?)
+    }
+
+    fn of(context: &Context, shadow: Shadow) -> Result<Self, Refusal> {
         let receivers = shadow.receivers(context, "ground", &ground().0)?;
         let blockers = Blockers::default();
         blockers.set(&SPHERES, DMat4::IDENTITY)?;
@@ -120,6 +126,37 @@ fn every_call_that_fails_is_told_and_leaves_nothing() {
     let calls = fail_each(|context| Shadowed::with(context, small), &Shadow::requirements());
     println!("{calls} calls failed in turn");
     assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn nothing_within_the_envelope_makes_a_pipeline() {
+    let exponentials = vec![Exponential::Adaptive, Exponential::OptimalLinear];
+    let envelope = || Envelope {
+        orders: vec![3, 4],
+        exponentials: exponentials.clone(),
+        normals: vec![false, true],
+        pixels: true,
+    };
+    let make = |settings| {
+        move |context: &Context, pipelines: &Pipelines| {
+            PixelShadow::with_pipelines(
+                context,
+                Settings { normals: true, exponential: Exponential::Adaptive, ..settings },
+                pipelines,
+            )?;
+            Shadowed::of(context, Shadow::with_pipelines(context, settings, pipelines)?)
+        }
+    };
+    let makes: Vec<_> = envelope().settings().into_iter().map(make).collect();
+    let makes: Vec<MakePrepared<'_, _, _>> = makes.iter().map(|make| make as _).collect();
+    let count = envelope().pipeline_count().unwrap();
+    let requirements = Shadow::requirements().and(&PixelShadow::requirements());
+    let made = prepare(&requirements, |context| Pipelines::prepare(context, envelope()), count, &makes);
+    println!("{made} pipelines for {} settings", makes.len());
+    // By order: a series with and without normals, squarings without, pixels.
+    assert_eq!((made, makes.len()), (8, 6));
+    let outside = envelope().check(&Settings { order: 5, ..SETTINGS() }).unwrap_err().to_string();
+    assert!(outside.contains("order 5") && outside.contains("Envelope::orders"), "{outside}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The functions that are watched, each with Vulkan's signature.
 
-use super::{Call, count, failure, kept, real, record};
+use super::{Call, count, failure, kept, memory, real, record};
 use airglow_gpu::ash::vk;
 use std::ffi::{CStr, c_void};
 
@@ -40,9 +40,21 @@ macro_rules! body {
     (fallible, $name:ident, $real:expr, ($($arg:ident),*), $numbers:expr) => {
         failure(stringify!($name)).unwrap_or_else(|| $real($($arg),*))
     };
+    (needs, $name:ident, $real:expr, ($d:ident, $object:ident, $out:ident), $numbers:expr) => {{
+        $real($d, $object, $out);
+        // SAFETY: the caller has room for them, and they were just written.
+        memory::requirements(unsafe { &mut *$out });
+    }};
+    (maps, $name:ident, $real:expr, ($d:ident, $memory:ident, $($arg:ident),*), $numbers:expr) => {
+        match memory::maps($memory) {
+            true => failure(stringify!($name)).unwrap_or_else(|| $real($d, $memory, $($arg),*)),
+            false => vk::Result::ERROR_MEMORY_MAP_FAILED,
+        }
+    };
 }
 
-/// Functions by kind: `command` is recorded with its numbers, `fallible` may fail on demand, `plain` is passed on.
+/// Functions by kind: `command` is recorded with its numbers, `fallible` may fail on demand, `plain` is passed on; `needs`
+/// and `maps` are those that [`memory`] has a say in.
 macro_rules! watched {
     ($($kind:ident $name:ident($($arg:ident: $ty:ty),*) $(-> $result:ty)? $([$($number:expr),*])?;)*) => {
         $(
@@ -106,18 +118,28 @@ watched! {
     fallible vkBindBufferMemory(d: vk::Device, buffer: vk::Buffer, memory: vk::DeviceMemory, offset: u64) -> vk::Result;
     fallible vkBindImageMemory(d: vk::Device, image: vk::Image, memory: vk::DeviceMemory, offset: u64) -> vk::Result;
     fallible vkGetQueryPoolResults(d: vk::Device, pool: vk::QueryPool, first: u32, n: u32, size: usize, p: *mut c_void, stride: u64, flags: vk::QueryResultFlags) -> vk::Result;
-    fallible vkMapMemory(d: vk::Device, memory: vk::DeviceMemory, offset: u64, size: u64, flags: vk::MemoryMapFlags, p: *mut *mut c_void) -> vk::Result;
+    maps vkMapMemory(d: vk::Device, memory: vk::DeviceMemory, offset: u64, size: u64, flags: vk::MemoryMapFlags, p: *mut *mut c_void) -> vk::Result;
     plain vkGetCalibratedTimestampsEXT(d: vk::Device, n: u32, p: *const vk::CalibratedTimestampInfoKHR<'static>, q: *mut u64, r: *mut u64) -> vk::Result;
-    plain vkGetBufferMemoryRequirements(d: vk::Device, buffer: vk::Buffer, p: *mut vk::MemoryRequirements);
-    plain vkGetImageMemoryRequirements(d: vk::Device, image: vk::Image, p: *mut vk::MemoryRequirements);
+    needs vkGetBufferMemoryRequirements(d: vk::Device, buffer: vk::Buffer, p: *mut vk::MemoryRequirements);
+    needs vkGetImageMemoryRequirements(d: vk::Device, image: vk::Image, p: *mut vk::MemoryRequirements);
     plain vkResetDescriptorPool(d: vk::Device, pool: vk::DescriptorPool, flags: vk::DescriptorPoolResetFlags) -> vk::Result;
     plain vkUnmapMemory(d: vk::Device, memory: vk::DeviceMemory);
     plain vkUpdateDescriptorSets(d: vk::Device, n: u32, p: *const vk::WriteDescriptorSet<'static>, m: u32, q: *const vk::CopyDescriptorSet<'static>);
 }
 
+/// What a device is truly asked for.
+macro_rules! asked {
+    ($info:ident) => {
+        *$info
+    };
+    ($info:ident, $asked:expr) => {
+        $asked($info)
+    };
+}
+
 /// A function that makes an object, and the one that destroys it; objects alive are counted.
 macro_rules! pairs {
-    ($($make:ident($info:ty), $destroy:ident: $handle:ident $(, $note:expr)?;)*) => {
+    ($($make:ident($info:ty), $destroy:ident: $handle:ident $(, $note:expr $(, $asked:expr)?)?;)*) => {
         $(
             #[expect(non_snake_case, reason = "Vulkan's name")]
             unsafe extern "system" fn $make(d: vk::Device, info: *const $info, c: Callbacks, out: *mut vk::$handle) -> vk::Result {
@@ -125,12 +147,17 @@ macro_rules! pairs {
                 if let Some(result) = failure(stringify!($make)) {
                     return result;
                 }
+                // SAFETY: the library passes a complete description.
+                let described = unsafe { &*info };
+                let asked = asked!(described $($(, $asked)?)?);
                 // SAFETY: the true function has this signature; the caller's arguments are passed on.
-                let result = unsafe { std::mem::transmute::<usize, True>(real(stringify!($make)))(d, info, c, out) };
+                let make = unsafe { std::mem::transmute::<usize, True>(real(stringify!($make))) };
+                // SAFETY: as above.
+                let result = unsafe { make(d, &raw const asked, c, out) };
                 count(stringify!($handle), i64::from(result == vk::Result::SUCCESS));
                 $(if result == vk::Result::SUCCESS {
-                    // SAFETY: the library passes a complete description, and the object was just written.
-                    unsafe { $note(&*info, *out) };
+                    // SAFETY: the object was just written.
+                    unsafe { $note(described, *out) };
                 })?
                 result
             }
@@ -161,7 +188,7 @@ macro_rules! pairs {
 }
 
 pairs! {
-    vkAllocateMemory(vk::MemoryAllocateInfo<'static>), vkFreeMemory: DeviceMemory;
+    vkAllocateMemory(vk::MemoryAllocateInfo<'static>), vkFreeMemory: DeviceMemory, memory::note, memory::asked;
     vkCreateBuffer(vk::BufferCreateInfo<'static>), vkDestroyBuffer: Buffer;
     vkCreateDescriptorPool(vk::DescriptorPoolCreateInfo<'static>), vkDestroyDescriptorPool: DescriptorPool;
     vkCreateDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo<'static>), vkDestroyDescriptorSetLayout: DescriptorSetLayout;
