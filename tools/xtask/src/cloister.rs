@@ -1,4 +1,4 @@
-//! Makes `assets/mesh/cloister.glb`, the demo scene's building, from `assets/mesh/nave.glb`.
+//! Makes `assets/mesh/cloister.glb`, columns and arches under the open sky, from `assets/mesh/nave.glb`.
 //!
 //! The nave is one white mesh without a camera. This keeps the connected pieces that stand without walls and
 //! vault (floor, columns, arches, ribs, altar), gives each a material, refines what needs it (light is stored

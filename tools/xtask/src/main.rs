@@ -1,10 +1,13 @@
 //! Developer commands, run as `cargo run -p xtask -- COMMAND`.
 
+mod arcade;
 mod cloister;
 #[cfg(test)]
 mod common_tests;
 mod compile;
+mod court;
 mod debug_set;
+mod dusk;
 mod error;
 mod files;
 mod glb;
@@ -16,7 +19,9 @@ mod products;
 mod relief;
 mod room;
 mod room_lines;
+mod sculpture;
 mod shaders;
+mod stone;
 mod street;
 mod translate;
 mod walker;
@@ -67,8 +72,10 @@ enum Command {
         #[arg(long)]
         remove: bool,
     },
-    /// Make assets/mesh/cloister.glb, the demo scene's building, from assets/mesh/nave.glb
+    /// Make assets/mesh/cloister.glb, columns under the open sky, from assets/mesh/nave.glb
     Cloister,
+    /// Make assets/mesh/court.glb, the demo scene's building, with its maps of stone, and its sky, assets/env/dusk_512.exr
+    Court,
     /// Write shaders/glsl/shadow/product3.glsl to product6.glsl, products of spherical harmonics as straight-line code
     Products,
     /// Make assets/mesh/street.glb, the scene of lamps in fog
@@ -97,6 +104,9 @@ fn run(command: Command) -> Result<(), error::Error> {
     let glsl = shader_root();
     match command {
         Command::Cloister => cloister::make(&workspace().join("assets")),
+        Command::Court => {
+            court::make(&workspace().join("assets")).and_then(|()| dusk::make(&workspace().join("assets")))
+        }
         Command::Street => street::make(&workspace().join("assets")),
         Command::Walker => walker::make(&workspace().join("assets")),
         Command::Products => products::make(&glsl),

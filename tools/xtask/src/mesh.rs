@@ -1,6 +1,7 @@
 //! A small indexed mesh for the tools that make assets: read, split, refine.
 
 use std::collections::HashMap;
+use std::f32::consts::{PI, TAU};
 use std::path::Path;
 
 use glam::Vec3;
@@ -65,6 +66,34 @@ impl Mesh {
         mesh
     }
 
+    /// A sphere about the origin of `rows` times `columns` quadrilaterals.
+    pub fn sphere(radius: f32, rows: u32, columns: u32) -> Self {
+        let mut mesh = Self::default();
+        for row in 0..=rows {
+            let (sine, cosine) = (PI * row as f32 / rows as f32).sin_cos();
+            for column in 0..=columns {
+                let (z, x) = (TAU * column as f32 / columns as f32).sin_cos();
+                let normal = Vec3::new(sine * x, cosine, sine * z);
+                mesh.positions.push(radius * normal);
+                mesh.normals.push(normal);
+            }
+        }
+        for row in 0..rows {
+            for column in 0..columns {
+                let a = row * (columns + 1) + column;
+                let b = a + columns + 1;
+                // Next to the poles one of the two has no area.
+                if row > 0 {
+                    mesh.indices.extend([a, a + 1, b]);
+                }
+                if row + 1 < rows {
+                    mesh.indices.extend([a + 1, b + 1, b]);
+                }
+            }
+        }
+        mesh
+    }
+
     /// Index triples.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.indices.chunks_exact(3).map(|triangle| [triangle[0], triangle[1], triangle[2]])
@@ -100,6 +129,25 @@ impl Mesh {
             self.positions.push(other.positions[index as usize]);
             self.normals.push(other.normals[index as usize]);
         }
+    }
+
+    /// Appends a quadrilateral; it is wound so that it is seen from where its normals point.
+    pub fn push_quad(&mut self, corners: [Vec3; 4], normals: [Vec3; 4]) {
+        let base = self.positions.len() as u32;
+        let [a, b, c, d] = corners;
+        let turned = (c - a).cross(d - b).dot(normals.iter().sum()) < 0.0;
+        self.positions.extend(corners);
+        self.normals.extend(normals);
+        let order = if turned { [0, 2, 1, 0, 3, 2] } else { [0, 1, 2, 0, 2, 3] };
+        self.indices.extend(order.map(|corner| base + corner));
+    }
+
+    /// Appends another mesh.
+    pub fn append(&mut self, other: &Mesh) {
+        let base = self.positions.len() as u32;
+        self.positions.extend(&other.positions);
+        self.normals.extend(&other.normals);
+        self.indices.extend(other.indices.iter().map(|index| base + index));
     }
 
     /// The mesh with equal vertices welded and every edge longer than `longest` of its middle halved until none is.

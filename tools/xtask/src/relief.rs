@@ -36,8 +36,8 @@ const REPEATS: [f32; 2] = [8.0, 4.0];
 
 /// Writes the maps and the meshes below `assets`.
 pub fn make(assets: &Path) -> Result<(), Error> {
-    write_map(&assets.join("normalmap/grooves.png"), groove)?;
-    write_map(&assets.join("normalmap/weave.png"), thread)?;
+    write_map(&assets.join("normalmap/grooves.png"), SIZE, groove)?;
+    write_map(&assets.join("normalmap/weave.png"), SIZE, thread)?;
     let sun = json!({"type": "directional", "color": [1.0, 0.93, 0.8], "intensity": 3.0});
     let lamp = json!({"type": "point", "color": [0.45, 0.7, 1.0], "intensity": 9.0});
     let shining = |number, translation: Vec3, towards: Vec3| {
@@ -156,7 +156,7 @@ fn thread(x: u32, y: u32) -> Vec2 {
 }
 
 /// A number in [0, 1) for each integer, without pattern (Wellons, "Prospecting for Hash Functions", 2018).
-fn unit(i: u32) -> f32 {
+pub fn unit(i: u32) -> f32 {
     let mut hash = i ^ (i >> 16);
     hash = hash.wrapping_mul(0x7feb_352d);
     hash ^= hash >> 15;
@@ -165,12 +165,12 @@ fn unit(i: u32) -> f32 {
     (hash >> 8) as f32 / (1 << 24) as f32
 }
 
-/// A map from the slope of the surface along x and, upwards, y: RGB = normal * 0.5 + 0.5.
-fn write_map(path: &Path, slope: fn(u32, u32) -> Vec2) -> Result<(), Error> {
+/// A square map of `size` texels a side from the slope of the surface along x and, upwards, y: RGB = normal * 0.5 + 0.5.
+pub fn write_map(path: &Path, size: u32, slope: fn(u32, u32) -> Vec2) -> Result<(), Error> {
     let texel = |x, y| {
         let normal = (-slope(x, y)).extend(1.0).normalize();
         image::Rgb((127.5 * normal + 128.0).to_array().map(|value| value as u8))
     };
     let refused = |message: String| Error::Asset { path: path.to_owned(), message };
-    image::RgbImage::from_fn(SIZE, SIZE, texel).save(path).map_err(|error| refused(error.to_string()))
+    image::RgbImage::from_fn(size, size, texel).save(path).map_err(|error| refused(error.to_string()))
 }

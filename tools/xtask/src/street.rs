@@ -1,7 +1,7 @@
 //! Makes `assets/mesh/street.glb`: a street at night with lamps at three distances, a house with a spot light on its wall,
 //! and two plinths.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 use std::path::Path;
 
 use glam::{Quat, Vec3};
@@ -50,7 +50,7 @@ pub fn make(assets: &Path) -> Result<(), Error> {
         let top = lamp - LAMP_RADIUS * Vec3::Y;
         street.push(buffers.primitive(&Mesh::block(foot - thick, top + thick), 2));
     }
-    let globe = buffers.primitive(&sphere(LAMP_RADIUS, 24, 48), 3);
+    let globe = buffers.primitive(&Mesh::sphere(LAMP_RADIUS, 24, 48), 3);
     let lit = |place: Vec3| {
         json!({"name": "lamp", "mesh": 1, "translation": place.to_array(),
         "extensions": {"KHR_lights_punctual": {"light": 0}}})
@@ -95,32 +95,4 @@ pub fn make(assets: &Path) -> Result<(), Error> {
             "cameras": [{"type": "perspective", "name": "pavement", "perspective": {"yfov": 0.85, "znear": 0.1, "zfar": 300.0}}],
         }),
     )
-}
-
-/// A sphere about the origin of `rows` times `columns` quadrilaterals.
-fn sphere(radius: f32, rows: u32, columns: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    for row in 0..=rows {
-        let (sine, cosine) = (PI * row as f32 / rows as f32).sin_cos();
-        for column in 0..=columns {
-            let (z, x) = (TAU * column as f32 / columns as f32).sin_cos();
-            let normal = Vec3::new(sine * x, cosine, sine * z);
-            mesh.positions.push(radius * normal);
-            mesh.normals.push(normal);
-        }
-    }
-    for row in 0..rows {
-        for column in 0..columns {
-            let a = row * (columns + 1) + column;
-            let b = a + columns + 1;
-            // Next to the poles one of the two has no area.
-            if row > 0 {
-                mesh.indices.extend([a, a + 1, b]);
-            }
-            if row + 1 < rows {
-                mesh.indices.extend([a + 1, b + 1, b]);
-            }
-        }
-    }
-    mesh
 }
