@@ -2,7 +2,7 @@
 //! logarithms with one exponential, and of chained products, over 1 to 200 blockers at orders 3 to 6; time of each generated
 //! product and square, and how long the driver compiles each kernel.
 
-use std::time::Duration;
+use std::cell::RefCell;
 
 use airglow_gpu::{GpuError, Recorder};
 use airglow_shadow::bench::{RowKernel, Scene, SphereKernel};
@@ -59,31 +59,65 @@ fn ground() -> Vec<[f32; 3]> {
         .collect()
 }
 
-fn least(times: &[Duration]) -> f64 {
-    times.iter().skip(1).map(Duration::as_secs_f64).fold(f64::INFINITY, f64::min)
+fn least(times: &[f64]) -> f64 {
+    times.iter().skip(1).copied().fold(f64::INFINITY, f64::min)
+}
+
+/// Seconds that all threads of this process have run: unlike the time on the wall, what other programs take is not in it.
+fn processor_time() -> f64 {
+    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let nanoseconds = threads.filter_map(|thread| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<u64>().ok()
+    });
+    1e-9 * nanoseconds.sum::<u64>() as f64
+}
+
+/// A bench, and the processor time of each frame that it ran.
+struct Stopwatch<'a> {
+    bench: Bench<'a>,
+    taken: &'a RefCell<Vec<f64>>,
+}
+
+impl Stopwatch<'_> {
+    /// What `frames` gives, and the times of its runs; what it reads back afterwards is not among them.
+    fn time<T>(
+        &self,
+        frames: impl FnOnce(&Bench<'_>) -> Result<T, ShadowError>,
+    ) -> Result<(T, Vec<f64>), ShadowError> {
+        self.taken.take();
+        let made = frames(&self.bench)?;
+        let mut times = self.taken.take();
+        times.truncate(RUNS);
+        Ok((made, times))
+    }
 }
 
 fn main() -> Result<(), ShadowError> {
     let fixture = fixture_with(&Shadow::requirements());
+    let taken = RefCell::<Vec<f64>>::default();
     let run = |record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>| {
-        fixture.device().run(fixture.context(), |recorder| record(recorder))
+        let begin = processor_time();
+        let done = fixture.device().run(fixture.context(), |recorder| record(recorder));
+        taken.borrow_mut().push(processor_time() - begin);
+        done
     };
-    let bench = Bench { context: fixture.context(), run: &run };
+    let watch = Stopwatch { bench: Bench { context: fixture.context(), run: &run }, taken: &taken };
     // One order and one number of spheres, or all.
     let chosen: Vec<usize> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
     let wanted = |place: usize, value: usize| chosen.get(place).is_none_or(|chosen| *chosen == value);
     let positions = ground();
     for order in (3..=6).filter(|order| wanted(0, *order)) {
-        products(&bench, order)?;
+        products(&watch, order)?;
         for count in [1, 5, 15, 60, 200].into_iter().filter(|count| wanted(1, *count)) {
-            scene(&bench, order, &figure(count), &positions)?;
+            scene(&watch, order, &figure(count), &positions)?;
         }
     }
     Ok(())
 }
 
 /// Time of products and squares.
-fn products(bench: &Bench<'_>, order: usize) -> Result<(), ShadowError> {
+fn products(watch: &Stopwatch<'_>, order: usize) -> Result<(), ShadowError> {
     println!("order {order}: kernel, ns a row, first run ms (driver's compiler)");
     let rows: Vec<f32> = (0..ROWS * order * order)
         .map(|i| if i % (order * order) == 0 { 3.5 } else { ((i * 37 % 101) as f32 - 50.0) * 1e-5 })
@@ -91,17 +125,17 @@ fn products(bench: &Bench<'_>, order: usize) -> Result<(), ShadowError> {
     for (name, kernel) in
         [("product", RowKernel::Product as fn(u32) -> RowKernel), ("square", RowKernel::Square)]
     {
-        let (_, one) = bench.rows(order, kernel(1), &rows, RUNS)?;
-        let (_, many) = bench.rows(order, kernel(9), &rows, RUNS)?;
+        let (_, one) = watch.time(|bench| bench.rows(order, kernel(1), &rows, RUNS))?;
+        let (_, many) = watch.time(|bench| bench.rows(order, kernel(9), &rows, RUNS))?;
         let each = (least(&many) - least(&one)) / (8 * ROWS) as f64;
-        println!("  {name:16} {:9.1}  {:8.1}", 1e9 * each, 1e3 * one[0].as_secs_f64());
+        println!("  {name:16} {:9.1}  {:8.1}", 1e9 * each, 1e3 * (one[0] - least(&one)));
     }
     Ok(())
 }
 
 /// Every way over one scene: time, first run, error over 64 receivers.
 fn scene(
-    bench: &Bench<'_>,
+    watch: &Stopwatch<'_>,
     order: usize,
     spheres: &[Sphere],
     positions: &[[f32; 3]],
@@ -120,8 +154,8 @@ fn scene(
     );
     for (name, kernel, exponential) in ways() {
         let settings = Settings { order, exponential, reach: 0.0, clamp: false, ..Default::default() };
-        let frame = bench.spheres(settings, kernel, &scene, RUNS)?;
-        let time = least(&frame.times) / positions.len() as f64;
+        let (frame, times) = watch.time(|bench| bench.spheres(settings, kernel, &scene, RUNS))?;
+        let time = least(&times) / positions.len() as f64;
         if kernel == SphereKernel::Products {
             chained = time;
         }
@@ -130,7 +164,7 @@ fn scene(
             frame.values[at * width..(at + 1) * width].iter().map(|v| f64::from(*v)).collect::<Vec<_>>()
         };
         let error = probes.iter().zip(&truths).map(|(&at, truth)| rms(&wide(at), truth)).sum::<f64>() / 64.0;
-        let first = 1e3 * frame.times[0].as_secs_f64();
+        let first = 1e3 * (times[0] - least(&times));
         let error = if kernel == SphereKernel::Logarithm { "-".to_owned() } else { format!("{error:.5}") };
         println!("  {name:16} {:9.1}  {:6.2}  {first:8.1}  {error}", 1e9 * time, chained / time);
     }

@@ -10,7 +10,7 @@ use crate::exponential::{Evaluator, Exponential};
 use crate::logarithm::{CLIP, Logarithm};
 use crate::reference::{caps, truth};
 use crate::settings::Settings;
-use crate::table::{Tables, looked_up};
+use crate::table::{self, Tables};
 use crate::{ShadowError, Sphere, check_order, circle};
 
 /// Degree of the rule that the truth of spheres is integrated by.
@@ -183,13 +183,12 @@ pub fn circle(order: usize, angular_radius: f64) -> Result<[Evaluated; 2], Shado
     check_order(order)?;
     let height = circle::height(angular_radius)?;
     let tables = Tables::new(order, CLIP)?;
-    let zonal = |table: &[[u32; 4]]| coefficients_from_factors(&looked_up(order, table, height));
-    let mut visibility = zonal(&tables.visibility)?;
+    let mut visibility = coefficients_from_factors(&table::visibility(order, height))?;
     visibility[0] += crate::exponential::ONE;
     Ok([
         Evaluated { values: visibility, reference: circle::visibility(order, height)? },
         Evaluated {
-            values: zonal(&tables.logarithm)?,
+            values: coefficients_from_factors(&table::looked_up(order, &tables.logarithm, height))?,
             reference: Logarithm::new(order, CLIP)?.of_cap(height)?,
         },
     ])

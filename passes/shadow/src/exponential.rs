@@ -10,7 +10,7 @@ use airglow_math::sh::product::TripleProduct;
 use crate::ShadowError;
 use crate::eigen;
 use crate::linear::Linear;
-use crate::polynomial::{Interval, Polynomial, normalized};
+use crate::polynomial::{EXCESS, Interval, Polynomial, excess, normalized, shortening};
 
 /// `sqrt(4 pi)`, the first coefficient of the constant 1.
 pub(crate) const ONE: f64 = 3.544_907_701_811_032;
@@ -40,8 +40,10 @@ pub enum Exponential {
         norm: f64,
     },
     /// The default: by Horner's rule the polynomial of the least degree that is within 2e-3 of the exponential wherever
-    /// the product matrix may have an eigenvalue, by a bound of them from mean and norm; squared only where that is more
-    /// than 32 wide. A squaring cuts off more than a step of a polynomial does.
+    /// the product matrix may have an eigenvalue, by a bound of them from mean and norm, without squarings: those cut off
+    /// more than a step of a polynomial does. A vector longer than 15 without its mean is scaled down to that; and where the
+    /// result is none that a visibility can have, because spheres in one place were counted for each, once more, by the
+    /// excess of its square.
     #[default]
     Adaptive,
     /// OL: `a(|f^|) 1 + b(|f^|) f^`.
@@ -141,13 +143,20 @@ impl Evaluator {
         Ok(g)
     }
 
-    /// The polynomial of the vector's own interval.
+    /// The polynomial of the vector's own interval; where the result has an excess, that of as much less of the vector.
     fn polynomial(&self, f: &[f64]) -> Result<Vec<f64>, ShadowError> {
-        let interval = |f: &[f64]| Interval::new(self.product.order(), f[0] / ONE, without_mean(f));
-        let squarings = interval(f)?.squarings();
-        let scale = (-f64::from(squarings)).exp2();
+        let scale = shortening(without_mean(f));
+        let g = self.polynomial_of(f, scale)?;
+        match excess(&g) {
+            more if more > EXCESS => self.polynomial_of(f, scale * EXCESS / more),
+            _ => Ok(g),
+        }
+    }
+
+    /// The exponential of a scaled vector by Horner's rule.
+    fn polynomial_of(&self, f: &[f64], scale: f64) -> Result<Vec<f64>, ShadowError> {
         let scaled: Vec<f64> = f.iter().map(|value| scale * value).collect();
-        let interval = interval(&scaled)?;
+        let interval = Interval::new(self.product.order(), scaled[0] / ONE, without_mean(&scaled))?;
         let Polynomial { half, coefficients } = Polynomial::for_half(interval.half);
         let t = normalized(&scaled, interval, half);
         let mut g = vec![0.0; f.len()];
@@ -157,9 +166,6 @@ impl Evaluator {
         }
         let factor = interval.top.exp();
         g.iter_mut().for_each(|value| *value *= factor);
-        for _ in 0..squarings {
-            g = self.product(&g, &g)?;
-        }
         Ok(g)
     }
 

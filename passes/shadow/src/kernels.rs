@@ -206,7 +206,7 @@ pub(crate) fn rows(kind: Kind, order: usize) -> Option<Vec<u32>> {
 pub(crate) fn visibility_bindings(kind: Kind, normals: bool) -> Vec<BindingDesc> {
     let read = |desc: &BindingDesc| match desc.binding {
         6 => normals,
-        7 => kind != Kind::Products,
+        3 | 7 => kind != Kind::Products,
         _ => true,
     };
     VISIBILITY_BINDINGS.into_iter().filter(read).collect()

@@ -22,8 +22,15 @@ const TOLERANCE: f64 = 2e-3;
 const STEPS: usize = 8;
 /// Octaves of half widths.
 const OCTAVES: usize = 14;
-/// The largest half width; beyond, vectors are scaled and the result is squared.
-pub(crate) const WIDEST: f64 = 16.0;
+/// The largest half width: that of the longest vector of order 6.
+const WIDEST: f64 = 16.0;
+/// The longest that a sum of logarithms may be without its mean; a longer one is scaled to it. Thirty spheres of 20 to 50
+/// degrees all around come to 24 at order 6, and lose nothing.
+const LONGEST: f64 = 15.0;
+/// The excess that is taken for rounding and for what series and polynomials are off.
+pub(crate) const EXCESS: f64 = 0.05;
+/// Added to a mean, so that noise about 0 has no excess.
+const NOISE: f64 = 0.02;
 /// Floats of a polynomial's row: coefficients by growing power, the degree in the last.
 pub const ROW: usize = 16;
 /// Rows of the table.
@@ -50,11 +57,20 @@ impl Interval {
         let up = reach.min((RINGING - mean).max(0.5 * reach));
         Ok(Self { top: mean + up, half: 0.5 * (up + reach) })
     }
+}
 
-    /// Squarings that bring the half width to at most [`WIDEST`].
-    pub(crate) fn squarings(&self) -> u32 {
-        if self.half > WIDEST && self.half < 1e30 { (self.half / WIDEST).log2().ceil() as u32 } else { 0 }
-    }
+/// What a vector is scaled by so that it is not longer than [`LONGEST`].
+pub(crate) fn shortening(norm: f64) -> f64 {
+    if norm > LONGEST { LONGEST / norm } else { 1.0 }
+}
+
+/// The logarithm of the integral of a function's square over that of the function. That of a function from 0 to 1 is 0 at
+/// most, and of its projection still less. The exponential of spheres that hide the same part of the sky has more: the
+/// ringing beside it, a little above 1, counts once for each of them, and grows with their number. Near the logarithm of the
+/// largest eigenvalue, once that outgrows all others.
+pub(crate) fn excess(g: &[f64]) -> f64 {
+    let square: f64 = g.iter().map(|value| value * value).sum();
+    (square.max(1e-30) / (ONE * g[0].max(0.0) + NOISE * ONE * ONE)).ln()
 }
 
 /// A polynomial in `t` from -1 to 1 that stands for `exp(half (t - 1))`.
@@ -67,7 +83,7 @@ pub(crate) struct Polynomial {
 }
 
 impl Polynomial {
-    /// For eigenvalues within a half width; [`WIDEST`] at most.
+    /// For eigenvalues within a half width, of which [`WIDEST`] is the largest there is.
     pub(crate) fn for_half(half: f64) -> Self {
         let place = (STEPS as f64 * (half / WIDEST).log2()).ceil() + (ROWS - 1) as f64;
         Self::of_row(if place > 0.0 { (place as usize).min(ROWS - 1) } else { 0 })
@@ -160,6 +176,20 @@ mod tests {
             }
             let bound = BOUND[order - MIN_ORDER];
             assert!(largest <= bound && largest > bound - 2e-4, "order {order}: {largest} and {bound}");
+        }
+    }
+
+    #[test]
+    fn the_longest_vector_has_a_polynomial_and_a_visibility_no_excess() {
+        for order in MIN_ORDER..=6 {
+            let interval = Interval::new(order, 1e3, LONGEST).unwrap();
+            assert!(interval.half <= WIDEST, "order {order}: {}", interval.half);
+            for height in [0.0, 1e-3, 0.1, 0.5, 1.0] {
+                let mut g = vec![0.0; order * order];
+                let zonal = crate::circle::visibility(order, height).unwrap();
+                zonal.iter().enumerate().for_each(|(l, value)| g[l * (l + 1)] = *value);
+                assert!(excess(&g) <= 0.0, "order {order}, {height}: {}", excess(&g));
+            }
         }
     }
 

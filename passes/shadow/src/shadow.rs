@@ -151,11 +151,7 @@ impl Shadow {
         pipeline_count: usize,
     ) -> Result<Self, ShadowError> {
         let tables = Tables::new(settings.order, settings.clip)?;
-        let factors = match program.kind {
-            Kind::Products => &tables.visibility,
-            _ => &tables.logarithm,
-        };
-        let factors = upload(context, "factors", factors)?;
+        let factors = upload(context, "factors", &tables.logarithm)?;
         let table = match program.table(&tables) {
             Some((values, end)) => Some((upload(context, "exponential", &values)?, end)),
             None => None,
@@ -247,11 +243,13 @@ impl Shadow {
             Binding::storage(0, &bindings.positions),
             Binding::storage(1, &receivers.slots),
             Binding::uniform(2, &spheres),
-            Binding::uniform(3, &self.factors),
             Binding::storage(4, &bindings.visibility),
             Binding::storage(5, &bindings.records),
             Binding::uniform(8, &nodes),
         ];
+        if self.program.kind != Kind::Products {
+            all.push(Binding::uniform(3, &self.factors));
+        }
         if self.settings.normals {
             let Some(normals) = &bindings.normals else {
                 return Err(GpuError::misuse(

@@ -1,8 +1,8 @@
-// The spheres of a group of receivers, and what they leave one receiver to see: the part that kernels over vertices and
-// over pixels share.
+// The spheres of a group of receivers, and what they leave each to see: the part that kernels over vertices and over pixels
+// share.
 //
-// The includer defines ORDER, EXPONENTIAL and, for receivers on surfaces, NORMALS, and declares `settings` with `count`, the
-// number of nodes.
+// The includer defines ORDER, EXPONENTIAL, RECEIVERS, that a lane holds, and, for receivers on surfaces, NORMALS, and declares
+// `settings` with `count`, the number of nodes. A workgroup has 64 receivers.
 
 #ifndef SHADOW_BLOCKERS_GLSL
 #define SHADOW_BLOCKERS_GLSL
@@ -21,16 +21,20 @@ layout(std140, set = 0, binding = 8) uniform Nodes {
     vec4 values[1024];
 } nodes;
 
-// Band factors over the square of the sine, at TABLE steps of the cosine from 0 to 1, and their growth to the next step:
-// sixteen bits each, in as many bytes.
+#if EXPONENTIAL < 7
+// Band factors of the logarithm of a cap over the square of the sine: of small caps polynomials of that square, of
+// large ones at TABLE steps of the cosine from 0 to 1, with their growth to the next step, sixteen bits each.
 #if ORDER > 4
-const uint TABLE = 512u;
+const uint TABLE = 508u;
 #else
-const uint TABLE = 1024u;
+const uint TABLE = 1016u;
 #endif
 layout(std140, set = 0, binding = 3) uniform Factors {
-    uvec4 values[1024];
+    vec4 small[6];  // by band, growing powers
+    vec4 least;     // x: the square of the sine from which on a cap is a large one
+    uvec4 values[1017];
 } factors;
+#endif
 
 #if EXPONENTIAL < 3
 // The table of the exponential: polynomials, or the numbers of the optimal linear one.
@@ -47,95 +51,217 @@ layout(std430, set = 0, binding = 7) readonly buffer Table {
 #include "shadow/cap.glsl"
 #include "shadow/exponential.glsl"
 
-shared uint chosen[MOST_NODES / 32u];
+// By kind, one bit a node.
+const uint SMALL = 0u;
+const uint LARGE = 1u;
+shared uint chosen[2][MOST_NODES / 32u];
+// Of each kind, words up to the last that is not 0.
+shared uint words[2];
 
-// The largest height that a sphere may have as a cap from somewhere in a bound.
-float largest_height(vec4 sphere, vec4 bound)
+
+// The largest square of the sine that a sphere may have as a cap from somewhere in a bound.
+float largest_square(vec4 sphere, vec4 bound)
 {
     vec3 nearest = vec3(max(length(sphere.xyz - bound.xyz) - bound.w, 0.0), 0.0, 0.0);
-    float sine2 = shadow_cap(nearest, sphere.w, vec3(0.0)).w;
+    return shadow_cap(nearest, sphere.w, vec3(0.0)).w;
+}
+
+// The height of a cap.
+float height_of(float sine2)
+{
     return sine2 / (1.0 + sqrt(1.0 - sine2));
 }
 
 // Chooses the cut of the hierarchy: nodes that stand for themselves below nodes that do not. A node lies within the one
-// that holds it, so that none below a node that stands is taken by looking at its holder alone. One bit a node.
+// that holds it, so that none below a node that stands is taken by looking at its holder alone.
 void choose(uint lane, vec4 bound, float reach, float cut)
 {
-    if (lane < MOST_NODES / 32u) { chosen[lane] = 0u; }
+    if (lane < MOST_NODES / 32u) {
+        chosen[SMALL][lane] = 0u;
+        chosen[LARGE][lane] = 0u;
+    }
+    if (lane < 2u) { words[lane] = 0u; }
     barrier();
-    for (uint at = lane; at < settings.count; at += 64u) {
+    for (uint at = lane; at < settings.count; at += 64u / uint(RECEIVERS)) {
         vec4 sphere = spheres.values[at];
         vec4 node = nodes.values[at];
-        float height = sphere.w > 0.0 ? largest_height(sphere, bound) : -1.0;
+        float sine2 = largest_square(sphere, bound);
+        float height = sphere.w > 0.0 ? height_of(sine2) : -1.0;
         bool taken = height >= reach && (node.z == 0.0 || height < cut);
-        if (taken && node.y >= 0.0) { taken = largest_height(spheres.values[uint(node.y)], bound) >= cut; }
-        if (taken) { atomicOr(chosen[at / 32u], 1u << (at % 32u)); }
+        if (taken && node.y >= 0.0) {
+            taken = height_of(largest_square(spheres.values[uint(node.y)], bound)) >= cut;
+        }
+        if (taken) {
+#if EXPONENTIAL < 7
+            uint kind = sine2 < factors.least.x ? SMALL : LARGE;
+#else
+            uint kind = SMALL;
+#endif
+            atomicOr(chosen[kind][at / 32u], 1u << (at % 32u));
+            atomicMax(words[kind], at / 32u + 1u);
+        }
     }
     barrier();
 }
 
-// Coefficients of a cap, axis and square of the sine, by the table.
-void cap_coefficients(vec4 cap, float share, out float f[COUNT])
+// Over the coefficients i of a band, with bounds that a compiler sees.
+#define BAND(l, begin, end, statement) for (int i = begin; i < end; ++i) { statement(i, l) }
+#if ORDER > 3
+#define BAND3(statement) BAND(3, 9, 16, statement)
+#else
+#define BAND3(statement)
+#endif
+#if ORDER > 4
+#define BAND4(statement) BAND(4, 16, 25, statement)
+#else
+#define BAND4(statement)
+#endif
+#if ORDER > 5
+#define BAND5(statement) BAND(5, 25, 36, statement)
+#else
+#define BAND5(statement)
+#endif
+#define EACH_BAND(statement)                                                                                            \
+    BAND(0, 0, 1, statement) BAND(1, 1, 4, statement) BAND(2, 4, 9, statement) BAND3(statement) BAND4(statement)        \
+    BAND5(statement)
+
+#if EXPONENTIAL < 7
+// Band factors of the logarithm of a small cap, by the square of its sine.
+void small_factors(vec4 polynomials[ORDER], float square, float scale, out float bands[ORDER])
 {
-    float place = sqrt(1.0 - cap.w) * float(TABLE);
+    for (int l = 0; l < ORDER; ++l) {
+        vec4 c = polynomials[l];
+        bands[l] = scale * (c.x + square * (c.y + square * (c.z + square * c.w)));
+    }
+}
+
+// The same of any cap, by the table.
+void large_factors(float square, float scale, out float bands[ORDER])
+{
+    float place = sqrt(1.0 - square) * float(TABLE);
     uint entry = min(uint(place), TABLE - 1u);
     float t = place - float(entry);
-    float scale = share * cap.w;
 #if ORDER > 4
     uvec4 values = factors.values[2u * entry];
     uvec4 growth = factors.values[2u * entry + 1u];
-    vec2 first = scale * (unpackHalf2x16(values.x) + t * unpackHalf2x16(growth.x));
-    vec2 second = scale * (unpackHalf2x16(values.y) + t * unpackHalf2x16(growth.y));
-    vec2 third = scale * (unpackHalf2x16(values.z) + t * unpackHalf2x16(growth.z));
 #else
     uvec4 values = factors.values[entry];
-    vec2 first = scale * (unpackHalf2x16(values.x) + t * unpackHalf2x16(values.z));
-    vec2 second = scale * (unpackHalf2x16(values.y) + t * unpackHalf2x16(values.w));
+    uvec4 growth = uvec4(values.zw, 0u, 0u);
 #endif
-    sh_evaluate(cap.xyz, f);
-    f[0] *= first.x;
-    for (int i = 1; i < 4; ++i) { f[i] *= first.y; }
-    for (int i = 4; i < 9; ++i) { f[i] *= second.x; }
+    for (int l = 0; l < ORDER; ++l) {
+        vec2 here = unpackHalf2x16(values[l / 2]);
+        vec2 more = unpackHalf2x16(growth[l / 2]);
+        bands[l] = scale * (here[l % 2] + t * more[l % 2]);
+    }
+}
+#else
+// Band factors of the visibility of a cap less 1 (Sun 2008, equation 5.36).
+void visibility_factors(float square, float scale, out float bands[ORDER])
+{
+    const float TWO_PI = 6.28318530717959;
+    float c = sqrt(1.0 - square);
+    float c2 = c * c;
+    scale *= -TWO_PI;
+    bands[0] = scale / (1.0 + c);
+    bands[1] = scale * 0.5;
+    bands[2] = scale * (0.5 * c);
 #if ORDER > 3
-    for (int i = 9; i < 16; ++i) { f[i] *= second.y; }
+    bands[3] = scale * (0.625 * c2 - 0.125);
 #endif
 #if ORDER > 4
-    for (int i = 16; i < 25; ++i) { f[i] *= third.x; }
+    bands[4] = scale * (c * (0.875 * c2 - 0.375));
 #endif
 #if ORDER > 5
-    for (int i = 25; i < 36; ++i) { f[i] *= third.y; }
+    bands[5] = scale * (c2 * (1.3125 * c2 - 0.875) + 0.0625);
 #endif
 }
+#endif
 
-// Adds the logarithms of the chosen nodes, or multiplies by their visibility; how many there are.
-uint accumulate(vec3 place, vec3 normal, inout float sum[COUNT])
+// Small caps that are taken up at once, so that the sums are read and written less often.
+const int TURNS = 2;
+
+// A point of a surface.
+struct Receiver {
+    vec3 place;
+    vec3 normal; // of length 1; with NORMALS
+};
+
+// What a sphere leaves one receiver: its logarithm, or its visibility less 1.
+void cap_term(uint kind, vec4 sphere, float share, Receiver receiver, vec4 polynomials[ORDER], out float term[COUNT])
+{
+#ifdef NORMALS
+    float above;
+    sphere = shadow_above(sphere, receiver.place, receiver.normal, above);
+    share *= above;
+#endif
+    vec4 cap = shadow_cap(sphere.xyz, sphere.w, receiver.place);
+    float bands[ORDER];
+#if EXPONENTIAL == 7
+    visibility_factors(cap.w, share * cap.w, bands);
+#else
+    if (kind == SMALL) {
+        small_factors(polynomials, cap.w, share * cap.w, bands);
+    } else {
+        large_factors(cap.w, share * cap.w, bands);
+    }
+#endif
+    sh_evaluate(cap.xyz, term);
+#define SCALED(i, l) term[i] *= bands[l];
+    EACH_BAND(SCALED)
+}
+
+// Adds the logarithms of the chosen nodes of a kind, or multiplies by their visibility; how many there are.
+uint accumulate_kind(uint kind, Receiver receivers[RECEIVERS], inout float sums[RECEIVERS][COUNT])
 {
     uint here = 0u;
-    for (uint word = 0u; 32u * word < settings.count; ++word) {
-        uint bits = chosen[word];
+    vec4 polynomials[ORDER];
+#if EXPONENTIAL < 7
+    // Read once: to some drivers a uniform costs as much as a sphere.
+    for (int l = 0; l < ORDER; ++l) { polynomials[l] = factors.small[l]; }
+#endif
+    for (uint word = 0u; word < words[kind]; ++word) {
+        uint bits = chosen[kind][word];
         here += uint(bitCount(bits));
         while (bits != 0u) {
-            uint at = 32u * word + uint(findLSB(bits));
-            bits &= bits - 1u;
-            vec4 sphere = spheres.values[at];
-            float share = nodes.values[at].x;
-#ifdef NORMALS
-            float above;
-            sphere = shadow_above(sphere, place, normal, above);
-            share *= above;
-#endif
-            float term[COUNT];
-            cap_coefficients(shadow_cap(sphere.xyz, sphere.w, place), share, term);
+            int turns = kind == SMALL && EXPONENTIAL < 7 ? TURNS : 1;
+            vec4 taken[TURNS];
+            float shares[TURNS];
+            for (int turn = 0; turn < turns; ++turn) {
+                // Past the last one: any, of no share.
+                uint at = 32u * word + (uint(findLSB(bits)) & 31u);
+                taken[turn] = spheres.values[at];
+                shares[turn] = bits != 0u ? nodes.values[at].x : 0.0;
+                bits &= bits - 1u;
+            }
+            for (int r = 0; r < RECEIVERS; ++r) {
+                float together[COUNT];
+                cap_term(kind, taken[0], shares[0], receivers[r], polynomials, together);
 #if EXPONENTIAL == 7
-            term[0] += ONE;
-            float product[COUNT];
-            sh_product(sum, term, product);
-            sum = product;
+                together[0] += ONE;
+                float product[COUNT];
+                sh_product(sums[r], together, product);
+                sums[r] = product;
 #else
-            EACH(i) { sum[i] += term[i]; }
+                for (int turn = 1; turn < turns; ++turn) {
+                    float term[COUNT];
+                    cap_term(kind, taken[turn], shares[turn], receivers[r], polynomials, term);
+                    EACH(i) { together[i] += term[i]; }
+                }
+                EACH(i) { sums[r][i] += together[i]; }
 #endif
+            }
         }
     }
+    return here;
+}
+
+// The same of all kinds.
+uint accumulate(Receiver receivers[RECEIVERS], inout float sums[RECEIVERS][COUNT])
+{
+    uint here = accumulate_kind(SMALL, receivers, sums);
+#if EXPONENTIAL < 7
+    here += accumulate_kind(LARGE, receivers, sums);
+#endif
     return here;
 }
 

@@ -66,6 +66,11 @@ uint scale_down(inout float f[COUNT], Exponential how, out float mean, out float
 // The largest eigenvalue of the product matrix of a vector without mean and of norm 1.
 const float BOUND = ORDER == 3 ? 0.4947 : ORDER == 4 ? 0.6873 : ORDER == 5 ? 0.8774 : 1.0633;
 
+// No logarithm of what blocks in different places is longer without its mean.
+const float LONGEST = 15.0;
+// From which on spheres in one place were counted for each.
+const float EXCESS = 0.05;
+
 // The interval that holds the eigenvalues of the product matrix: upper end and half of the width.
 vec2 eigenvalues(float mean, float norm)
 {
@@ -74,38 +79,10 @@ vec2 eigenvalues(float mean, float norm)
     return vec2(mean + up, 0.5 * (up + reach));
 }
 
-void exponential(inout float f[COUNT], Exponential how)
+// By Horner's rule: the two highest powers, then a product for each lower one, then squarings; one loop, so that the product
+// stands in the program once. Without `row` coefficients are those of the series.
+void horner(float f[COUNT], float begin, uint degree, uint row, bool series, uint squarings, out float g[COUNT])
 {
-    uint degree = how.degree;
-    uint row = 0u;
-    uint squarings = 0u;
-    float norm, mean;
-    float begin; // of what the coefficients are scaled by
-    if (degree > 0u) {
-        squarings = scale_down(f, how, mean, norm);
-        begin = mean;
-        for (uint k = degree; k > 1u; --k) { begin /= float(k); }
-    } else {
-        mean = f[0] / ONE;
-        norm = without_mean(f);
-        vec2 interval = eigenvalues(mean, norm);
-        // No squarings where it is not finite either.
-        squarings = interval.y > 16.0 && interval.y < 1e30 ? uint(ceil(log2(interval.y / 16.0))) : 0u;
-        float scale = exp2(-float(squarings));
-        interval = eigenvalues(scale * mean, scale * norm);
-        float place = clamp(ceil(8.0 * log2(max(interval.y, 1e-30) / 16.0)) + 112.0, 0.0, 112.0);
-        row = 16u * uint(place);
-        degree = uint(SHADOW_TABLE(row + 15u));
-        float inverse = exp2((112.0 - place) / 8.0) / 16.0;
-        EACH(i) { f[i] *= scale * inverse; }
-        f[0] -= (interval.x * inverse - 1.0) * ONE;
-        begin = exp(interval.x);
-    }
-    float g[COUNT];
-    float h[COUNT];
-    // The two highest powers, then a product for each lower one, then squarings: one loop, so that the product stands in
-    // the program once.
-    bool series = how.degree > 0u;
     float coefficient = series ? begin : begin * SHADOW_TABLE(row + degree);
     EACH(i) { g[i] = coefficient * f[i]; }
     coefficient = series ? coefficient * float(degree) : begin * SHADOW_TABLE(row + degree - 1u);
@@ -114,6 +91,7 @@ void exponential(inout float f[COUNT], Exponential how)
     for (uint at = 0u; at < steps + squarings; ++at) {
         bool squaring = at >= steps;
         float left[COUNT];
+        float h[COUNT];
         EACH(i) { left[i] = squaring ? g[i] : f[i]; }
         sh_product(left, g, h);
         g = h;
@@ -122,6 +100,54 @@ void exponential(inout float f[COUNT], Exponential how)
             coefficient = series ? coefficient * float(power + 1u) : begin * SHADOW_TABLE(row + power);
             g[0] += coefficient * ONE;
         }
+    }
+}
+
+// The logarithm of how much more the square of a function holds than the function; none from 0 to 1 has any. Noise about 0
+// has none either.
+float excess(float g[COUNT])
+{
+    float square = 0.0;
+    EACH(i) { square = fma(g[i], g[i], square); }
+    return log(max(square, 1e-30) / (ONE * max(g[0], 0.0) + 0.02 * ONE * ONE));
+}
+
+void exponential(inout float f[COUNT], Exponential how)
+{
+    bool series = how.degree > 0u;
+    float mean, norm;
+    float scale = 1.0;
+    float begin = 1.0; // of what the coefficients are scaled by
+    uint squarings = 0u;
+    if (series) {
+        squarings = scale_down(f, how, mean, norm);
+        begin = mean;
+        for (uint k = how.degree; k > 1u; --k) { begin /= float(k); }
+    } else {
+        mean = f[0] / ONE;
+        norm = without_mean(f);
+        scale = norm > LONGEST ? LONGEST / norm : 1.0;
+    }
+    float g[COUNT];
+    // Where spheres in one place were counted for each, once more with as much less of all.
+    for (uint attempt = 0u; attempt < 2u; ++attempt) {
+        float t[COUNT] = f;
+        uint degree = how.degree;
+        uint row = 0u;
+        if (!series) {
+            vec2 interval = eigenvalues(scale * mean, scale * norm);
+            float place = clamp(ceil(8.0 * log2(max(interval.y, 1e-30) / 16.0)) + 112.0, 0.0, 112.0);
+            row = 16u * uint(place);
+            degree = uint(SHADOW_TABLE(row + 15u));
+            float inverse = exp2((112.0 - place) / 8.0) / 16.0;
+            EACH(i) { t[i] *= scale * inverse; }
+            t[0] -= (interval.x * inverse - 1.0) * ONE;
+            begin = exp(interval.x);
+        }
+        horner(t, begin, degree, row, series, squarings, g);
+        float more = series ? 0.0 : excess(g);
+        if (!(more > EXCESS)) { break; }
+        scale *= EXCESS / more;
     }
     f = g;
 }

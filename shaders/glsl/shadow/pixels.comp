@@ -42,6 +42,7 @@ layout(push_constant) uniform Settings {
 } settings;
 
 #define SHADOW_TABLE_END 1.0
+#define RECEIVERS 1
 #include "shadow/blockers.glsl"
 
 const float PI = 3.14159265358979;
@@ -124,9 +125,12 @@ void main()
     vec3 normal = texelFetch(normals, inside, 0).xyz;
     normal *= inversesqrt(max(dot(normal, normal), 1e-30));
     choose(lane, tile_bound(lane, place, there), settings.reach, settings.cut);
-    float g[COUNT];
-    EACH(i) { g[i] = 0.0; }
-    uint here = accumulate(place, normal, g);
+    Receiver receivers[1];
+    receivers[0] = Receiver(place, normal);
+    float sums[1][COUNT];
+    EACH(i) { sums[0][i] = 0.0; }
+    uint here = accumulate(receivers, sums);
+    float g[COUNT] = sums[0];
     if (here == 0u) {
         g[0] = ONE;
     } else {

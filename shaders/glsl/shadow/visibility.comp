@@ -7,7 +7,16 @@
 // The includer's defines: ORDER; EXPONENTIAL as in exponential.glsl, 7: the product of the visibilities one after the other,
 // the rival; NORMALS: receivers lie on surfaces and see nothing below their tangent planes.
 
-layout(local_size_x = 64) in;
+// A lane holds two receivers, for which it reads a sphere once; one of those that take long each.
+#if EXPONENTIAL == 7 || ORDER > 4
+#define RECEIVERS 1
+#else
+#define RECEIVERS 2
+#endif
+const uint CLUSTER = 64u;
+const uint LANES = CLUSTER / uint(RECEIVERS);
+
+layout(local_size_x = 64 / RECEIVERS) in;
 
 // Object space, three floats a receiver.
 layout(std430, set = 0, binding = 0) readonly buffer Positions {
@@ -53,12 +62,14 @@ layout(push_constant) uniform Settings {
 
 #include "shadow/blockers.glsl"
 
-// No receiver is there.
-const float FAR = 1e30;
+const uint NOBODY = 0xffffffffu;
 
-shared vec3 places[64];
-shared vec3 corners[2][8];
+// Of the box of the cluster's receivers, as numbers in the order of floats.
+shared uint corners[6];
 shared uint clamped_here;
+
+// Beyond every receiver.
+const float FAR = 3e38;
 
 vec3 position(uint receiver)
 {
@@ -66,79 +77,116 @@ vec3 position(uint receiver)
     return vec3(positions.values[at], positions.values[at + 1u], positions.values[at + 2u]);
 }
 
-// The sphere around the box of the cluster's receivers that are somewhere; eight at a time, then the eight.
-vec4 cluster_bound(uint lane, vec3 place, bool there)
+// By bits: comparisons of what is no number are whatever a driver makes of them.
+bool finite(vec3 v)
 {
-    bool somewhere = there && all(lessThan(abs(place), vec3(FAR)));
-    places[lane] = somewhere ? place : vec3(FAR);
+    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
+}
+
+// The receiver of a number; at the origin where nobody is there, or where it is not finite.
+Receiver read(uint number, out bool there)
+{
+    Receiver receiver = Receiver(vec3(0.0), vec3(0.0));
+    there = number != NOBODY;
+    if (there) {
+        Receiver raw = receiver;
+        raw.place = position(number);
+        there = finite(raw.place);
+#ifdef NORMALS
+        uint at = 3u * number;
+        raw.normal = vec3(normals.values[at], normals.values[at + 1u], normals.values[at + 2u]);
+        there = there && finite(raw.normal);
+        raw.normal *= inversesqrt(max(dot(raw.normal, raw.normal), 1e-30));
+#endif
+        if (there) { receiver = raw; }
+    }
+    return receiver;
+}
+
+// Floats as numbers in the same order.
+uint ordered(float value)
+{
+    uint bits = floatBitsToUint(value);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+float of_ordered(uint number)
+{
+    return uintBitsToFloat((number & 0x80000000u) != 0u ? number & 0x7fffffffu : ~number);
+}
+
+// The sphere around the box of all receivers of the cluster, of which a lane knows the box of its own.
+vec4 cluster_bound(uint lane, vec3 low, vec3 high)
+{
+    if (lane < 6u) { corners[lane] = lane < 3u ? 0xffffffffu : 0u; }
     barrier();
-    if (lane < 8u) {
-        vec3 low = vec3(FAR);
-        vec3 high = vec3(-FAR);
-        for (uint i = 0u; i < 8u; ++i) {
-            vec3 next = places[8u * lane + i];
-            bool counts = next.x < FAR;
-            low = counts ? min(low, next) : low;
-            high = counts ? max(high, next) : high;
-        }
-        corners[0][lane] = low;
-        corners[1][lane] = high;
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        atomicMin(corners[axis], ordered(low[axis]));
+        atomicMax(corners[axis + 3u], ordered(high[axis]));
     }
     barrier();
-    vec3 low = corners[0][0];
-    vec3 high = corners[1][0];
-    for (uint i = 1u; i < 8u; ++i) {
-        low = min(low, corners[0][i]);
-        high = max(high, corners[1][i]);
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        low[axis] = of_ordered(corners[axis]);
+        high[axis] = of_ordered(corners[axis + 3u]);
     }
     return vec4(0.5 * (low + high), 0.5 * length(high - low));
+}
+
+// What a receiver sees by the sum of its spheres, in place of that; whether it had to be clamped.
+bool see(inout float sum[COUNT], bool open)
+{
+    if (open) {
+        // Out of reach of every sphere: no exponential.
+        EACH(i) { sum[i] = i == 0 ? ONE : 0.0; }
+        return false;
+    }
+#if EXPONENTIAL < 7
+    exponential(sum, Exponential(settings.degree, settings.norm, 0u));
+#endif
+    return (settings.flags & CLAMPED) != 0u && clamp_visibility(sum);
 }
 
 void main()
 {
     uint lane = gl_LocalInvocationID.x;
     uint cluster = settings.first + gl_WorkGroupID.x;
-    uint receiver = slots.values[64u * cluster + lane];
-    bool there = receiver != 0xffffffffu;
-    vec3 place = there ? position(receiver) : vec3(0.0);
-    vec3 normal = vec3(0.0);
-#ifdef NORMALS
-    if (there) {
-        uint at = 3u * receiver;
-        normal = vec3(normals.values[at], normals.values[at + 1u], normals.values[at + 2u]);
-        normal *= inversesqrt(max(dot(normal, normal), 1e-30));
-    }
-#endif
-    if (lane == 0u) { clamped_here = 0u; }
-    choose(lane, cluster_bound(lane, place, there), settings.reach, settings.cut);
-    float sum[COUNT];
-    bool continued = (settings.flags & CONTINUED) != 0u && there;
-    EACH(i) { sum[i] = continued ? visibility.values[receiver * COUNT + i] : 0.0; }
-#if EXPONENTIAL == 7
-    sum[0] = ONE;
-#endif
-    uint chosen_here = accumulate(place, normal, sum);
-    uint before = (settings.flags & CONTINUED) != 0u ? records.values[cluster].x : 0u;
+    bool continued = (settings.flags & CONTINUED) != 0u;
     bool logarithm = (settings.flags & LOGARITHM) != 0u;
-    bool clamped = false;
-    if (!logarithm) {
-        if (before + chosen_here == 0u) {
-            // Out of reach of every sphere: no exponential.
-            sum[0] = ONE;
-        } else {
-#if EXPONENTIAL < 7
-            exponential(sum, Exponential(settings.degree, settings.norm, 0u));
+    uint numbers[RECEIVERS];
+    bool there[RECEIVERS];
+    Receiver receivers[RECEIVERS];
+    float sums[RECEIVERS][COUNT];
+    vec3 low = vec3(FAR);
+    vec3 high = vec3(-FAR);
+    if (lane == 0u) { clamped_here = 0u; }
+    for (int r = 0; r < RECEIVERS; ++r) {
+        numbers[r] = slots.values[CLUSTER * cluster + LANES * uint(r) + lane];
+        receivers[r] = read(numbers[r], there[r]);
+        low = there[r] ? min(low, receivers[r].place) : low;
+        high = there[r] ? max(high, receivers[r].place) : high;
+        EACH(i) { sums[r][i] = continued && there[r] ? visibility.values[numbers[r] * COUNT + i] : 0.0; }
+#if EXPONENTIAL == 7
+        sums[r][0] = ONE;
 #endif
-            if ((settings.flags & CLAMPED) != 0u) { clamped = clamp_visibility(sum); }
+    }
+    choose(lane, cluster_bound(lane, low, high), settings.reach, settings.cut);
+    uint chosen_here = accumulate(receivers, sums);
+    uint before = continued ? records.values[cluster].x : 0u;
+    float window = logarithm ? 0.0 : settings.window;
+    // A loop that is not unrolled, so that the exponential stands in the program once.
+    for (uint r = 0u; r < uint(RECEIVERS); ++r) {
+        bool first = r == 0u;
+        uint number = first ? numbers[0] : numbers[RECEIVERS - 1];
+        bool blocked = first ? there[0] : there[RECEIVERS - 1];
+        float sum[COUNT];
+        EACH(i) { sum[i] = !blocked ? 0.0 : first ? sums[0][i] : sums[RECEIVERS - 1][i]; }
+        if (!logarithm && see(sum, !blocked || before + chosen_here == 0u)) { atomicAdd(clamped_here, 1u); }
+        if (number == NOBODY) { continue; }
+        EACH(i) {
+            float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
+            visibility.values[number * COUNT + i] = sum[i] / (1.0 + window * band * band);
         }
     }
-    if (clamped && there) { atomicAdd(clamped_here, 1u); }
     barrier();
     if (lane == 0u) { records.values[cluster] = uvec2(before + chosen_here, clamped_here); }
-    if (!there) { return; }
-    float window = logarithm ? 0.0 : settings.window;
-    EACH(i) {
-        float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
-        visibility.values[receiver * COUNT + i] = sum[i] / (1.0 + window * band * band);
-    }
 }
