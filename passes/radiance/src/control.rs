@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::gpu::{EmitterSphere, EmitterTriangle};
-use crate::{RadianceError, Sphere, Triangle, check, check_spheres};
+use crate::gpu::{EmitterSphere, EmitterTriangle, Surfaces};
+use crate::{Picture, RadianceError, Shown, Sphere, Triangle, check, check_spheres};
 
 /// What a receiver is lit by.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,20 +15,65 @@ pub struct Lights<'a> {
     /// Light from far away about the axes of that space, SH RGB, order squared of them, which every vertex gets as well:
     /// its transfer knows what shadows it. Empty for none.
     pub distant: &'a [[f32; 3]],
+    /// Triangles that emit what they show of [`pictures`](Self::pictures), which rays read where they meet them.
+    pub shown: &'a [Shown],
+    /// What they show.
+    pub pictures: &'a [Picture<'a>],
+    /// By how much the medium between dims the light of emitters, 1/m: a factor exp(-extinction distance).
+    pub extinction: [f32; 3],
 }
 
 impl Lights<'_> {
-    /// All emitters as triangles, those that stand for spheres last.
+    /// Nothing.
+    pub const NONE: Self =
+        Self { emitters: &[], spheres: &[], distant: &[], shown: &[], pictures: &[], extinction: [0.0; 3] };
+
+    /// All emitters as triangles: those of uniform radiance, then the means of those that show pictures, then those that stand
+    /// for spheres. A picture that is not there is left out.
     #[must_use]
     pub fn triangles(&self) -> Vec<Triangle> {
+        let shown = self.shown.iter().filter_map(|shown| Some(shown.mean(self.pictures.get(shown.picture)?)));
         let spheres = self.spheres.iter().flat_map(Sphere::triangles);
-        self.emitters.iter().copied().chain(spheres).collect()
+        self.emitters.iter().copied().chain(shown).chain(spheres).collect()
+    }
+
+    /// Refuses what [`Control::set`] refuses of emitters.
+    pub(crate) fn check(&self) -> Result<(), RadianceError> {
+        check(self.emitters)?;
+        check_spheres(self.spheres)?;
+        self.pictures.iter().try_for_each(Picture::check)?;
+        Shown::check(self.shown, self.pictures.len())?;
+        match self.extinction.iter().all(|x| x.is_finite() && *x >= 0.0) {
+            true => Ok(()),
+            false => {
+                let value = format!("{:?}", self.extinction);
+                Err(RadianceError::setting("the medium's extinction", value, "finite numbers, zero or more"))
+            }
+        }
+    }
+
+    fn check_distant(&self, coefficients: usize) -> Result<(), RadianceError> {
+        let (expected, actual) = (coefficients, self.distant.len());
+        if actual != 0 && actual != expected {
+            return Err(RadianceError::Length { what: "the distant light", expected, actual });
+        }
+        let bad = |light: &[f32; 3]| light.iter().any(|x| !x.is_finite());
+        if let Some(index) = self.distant.iter().position(bad) {
+            let value = format!("{:?}", self.distant[index]);
+            return Err(RadianceError::Value { what: "coefficient of the distant light", index, value });
+        }
+        Ok(())
     }
 
     /// Whether anything near gives light.
     pub(crate) fn emit(&self) -> bool {
         self.emitters.iter().any(Triangle::emits)
             || self.spheres.iter().any(|sphere| sphere.radiance.max_element() > 0.0)
+            || self.shown.iter().any(|shown| {
+                self.pictures
+                    .get(shown.picture)
+                    .is_some_and(|picture| picture.texels.iter().flatten().any(|x| *x > 0.0))
+            })
     }
 }
 
@@ -49,6 +94,8 @@ pub(crate) struct Packed {
     pub spheres: Vec<EmitterSphere>,
     pub sphere_count: u32,
     pub distant: Vec<[f32; 4]>,
+    /// What is more of triangles than corners and one radiance.
+    pub surfaces: Surfaces,
 }
 
 impl Control {
@@ -62,20 +109,11 @@ impl Control {
     /// stay, no sample is taken again.
     ///
     /// # Errors
-    /// [`RadianceError::Value`] for an emitter or distant light that is not finite; [`RadianceError::Length`] unless there
-    /// is no distant light or order squared of it.
+    /// [`RadianceError::Value`] for an emitter, picture or distant light that is not finite; [`RadianceError::Length`] unless
+    /// there is no distant light or order squared of it, and for pictures whose size is another.
     pub fn set(&self, lights: &Lights<'_>) -> Result<(), RadianceError> {
-        check(lights.emitters)?;
-        check_spheres(lights.spheres)?;
-        let (expected, actual) = (self.coefficients, lights.distant.len());
-        if actual != 0 && actual != expected {
-            return Err(RadianceError::Length { what: "the distant light", expected, actual });
-        }
-        let bad = |light: &[f32; 3]| light.iter().any(|x| !x.is_finite());
-        if let Some(index) = lights.distant.iter().position(bad) {
-            let value = format!("{:?}", lights.distant[index]);
-            return Err(RadianceError::Value { what: "coefficient of the distant light", index, value });
-        }
+        lights.check()?;
+        lights.check_distant(self.coefficients)?;
         let mut distant = vec![[0.0; 4]; self.coefficients];
         distant.iter_mut().zip(lights.distant).for_each(|(to, [r, g, b])| *to = [*r, *g, *b, 0.0]);
         // A buffer cannot be empty: one of no size and no light stands for none.
@@ -84,7 +122,8 @@ impl Control {
         let (flat_count, sphere_count) = (lights.emitters.len() as u32, spheres.len() as u32);
         or_nothing(&mut triangles);
         or_nothing(&mut spheres);
-        *self.lock() = Packed { triangles, flat_count, spheres, sphere_count, distant };
+        let surfaces = Surfaces::new(lights)?;
+        *self.lock() = Packed { triangles, flat_count, spheres, sphere_count, distant, surfaces };
         Ok(())
     }
 

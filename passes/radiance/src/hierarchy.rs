@@ -6,6 +6,7 @@
 
 use std::ops::ControlFlow;
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::RadianceError;
@@ -14,7 +15,7 @@ use crate::RadianceError;
 pub const MAX_VERTICES: usize = 1 << 26;
 
 /// A set of vertices near one another. 64 bytes; a device reads the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Node {
     /// Mean position of the vertices, where a sample of the node is taken.
@@ -42,8 +43,8 @@ pub struct Node {
 /// The tree, and the order in which it holds the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hierarchy {
-    nodes: Vec<Node>,
-    vertices: Vec<u32>,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) vertices: Vec<u32>,
 }
 
 impl Hierarchy {

@@ -58,7 +58,7 @@ impl Picture<'_> {
         Ok(parts.into_iter().map(part).collect())
     }
 
-    fn check(&self) -> Result<(), RadianceError> {
+    pub(crate) fn check(&self) -> Result<(), RadianceError> {
         let [width, height] = self.size;
         let (expected, actual) = (width.saturating_mul(height), self.texels.len());
         if expected == 0 {
@@ -79,7 +79,7 @@ impl Picture<'_> {
     }
 
     /// Mean over a triangle, corners in texels; the texel at its middle where it has no area.
-    fn mean(&self, corners: [DVec2; 3]) -> DVec3 {
+    pub(crate) fn mean(&self, corners: [DVec2; 3]) -> DVec3 {
         let [a, b, c] = corners;
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).ceil());
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);

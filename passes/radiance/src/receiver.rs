@@ -13,7 +13,7 @@ use glam::DMat3;
 use crate::gpu::refinement::rounds;
 use crate::gpu::tree;
 use crate::gpu::vertices::{self, GROUP};
-use crate::gpu::{EmitterTriangle, LightShape, OldSamples, RefineState, SampleBuffers};
+use crate::gpu::{EmitterTriangle, LightShape, OldSamples, RefineState, SampleBuffers, Surfaces};
 use crate::part::{Chunk, Layout, Part};
 use crate::stage::Resource;
 use crate::{Hierarchy, PassSettings, RadianceError};
@@ -44,7 +44,14 @@ pub struct Receiver {
     /// Whether any vertex reflects light.
     pub(crate) reflects: bool,
     /// The emitters that its samples were taken of.
-    sampled: Arc<Mutex<Vec<EmitterTriangle>>>,
+    sampled: Arc<Mutex<Sampled>>,
+}
+
+/// What samples were taken of; no triangle stands for none taken.
+#[derive(Debug, Default)]
+pub(crate) struct Sampled {
+    pub triangles: Vec<EmitterTriangle>,
+    pub surfaces: Surfaces,
 }
 
 impl Receiver {
@@ -132,10 +139,10 @@ impl Receiver {
 
     /// Forgets its samples, so that the next frame takes them again: for a host that threw away a recorded frame.
     pub fn forget_samples(&self) {
-        self.sampled().clear();
+        self.sampled().triangles.clear();
     }
 
-    pub(crate) fn sampled(&self) -> MutexGuard<'_, Vec<EmitterTriangle>> {
+    pub(crate) fn sampled(&self) -> MutexGuard<'_, Sampled> {
         self.sampled.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -172,18 +172,20 @@ impl Scene {
     fn record_samples(&self, recorder: &mut Recorder<'_>) -> Result<(), GpuError> {
         let packed = self.control.lock();
         let mut sampled = self.receiver.sampled();
-        if *sampled == packed.triangles {
+        let shows = sampled.surfaces == packed.surfaces;
+        if shows && sampled.triangles == packed.triangles {
             return Ok(());
         }
         let (receiver, samples) = (&self.receiver, &self.receiver.samples);
         let settings = &receiver.settings.refinement;
         let triangles = recorder.upload(&packed.triangles)?;
-        let same = sampled.len() == packed.triangles.len();
+        // How much a picture may have changed is not looked at.
+        let same = shows && sampled.triangles.len() == packed.triangles.len();
         let old = receiver.old.as_ref().filter(|_| same);
         if let Some(old) = old {
             old.record_copy(recorder, samples)?;
         }
-        let before = if old.is_some() { &*sampled } else { &packed.triangles };
+        let before = if old.is_some() { &sampled.triangles } else { &packed.triangles };
         let glows = recorder.upload(&DeviceGlow::of(&packed.triangles, before))?;
         let texels = TexelBuffers {
             batch: samples.state.slice(0, size_of::<crate::gpu::Batch>() as u64)?,
@@ -193,6 +195,10 @@ impl Scene {
             spheres: recorder.upload(&packed.spheres)?,
             sphere_count: packed.sphere_count,
             flat_count: packed.flat_count,
+            surfaces: recorder.upload(&packed.surfaces.shown)?,
+            shown_count: packed.surfaces.count,
+            pictures: recorder.upload(&packed.surfaces.texels)?,
+            extinction: packed.surfaces.extinction,
             kept: old.is_some(),
             lights: (&samples.lights).into(),
             gradients: (&samples.gradients).into(),
@@ -213,7 +219,8 @@ impl Scene {
             recorder.memory_barrier(Access::ComputeStorageReadWrite, Access::ComputeStorageReadWrite)?;
             refine(recorder, false)?;
         }
-        sampled.clone_from(&packed.triangles);
+        sampled.triangles.clone_from(&packed.triangles);
+        sampled.surfaces.clone_from(&packed.surfaces);
         Ok(())
     }
 

@@ -157,6 +157,9 @@ void polygon_sums(vec3 a, vec3 b, vec3 c, vec3 radiance, out vec4 sums[ELEMENTS]
         vec3 tilt = normal / dot(normal, texel.direction);
         [[unroll]] for (int k = 0; k < 3; ++k) { texel.tilt[k] = tilt[k] * texel.slope; }
 #endif
+#if GRADIENTS
+        texel.dimming = vec3(0.0);
+#endif
         sums_add(texel, sums);
     }
     if (seen && !small) {

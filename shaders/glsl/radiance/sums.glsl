@@ -23,6 +23,7 @@ struct Texel {
     float nearness; // 1 / distance where it emits
 #if GRADIENTS
     vec3 tilt[3]; // slope times x, y and z of the normal over its product with the unit ray
+    vec3 dimming; // radiance times the extinction of what it comes through
 #endif
 };
 
@@ -32,7 +33,8 @@ void sums_clear(out vec4 sums[ELEMENTS])
 }
 
 // Gradients: a patch of area dA at s from the point, of normal n, sends L Y(s/|s|) n.s / |s|^3 dA; moving the point is
-// moving s the other way (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for Mid-Range Illumination", 2004).
+// moving s the other way (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for Mid-Range Illumination", 2004). A
+// medium that dims it does so by less when the way is shorter.
 void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
 {
     float basis[COEFFICIENTS];
@@ -46,8 +48,9 @@ void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
     vec3 slopes[COEFFICIENTS];
     sh_slopes(texel.direction, basis, slopes);
     vec3 change[3];
+    vec3 along = 3.0 * slope + texel.solid_angle * texel.dimming;
     [[unroll]] for (int k = 0; k < 3; ++k) {
-        change[k] = 3.0 * texel.direction[k] * slope - texel.solid_angle * texel.tilt[k];
+        change[k] = texel.direction[k] * along - texel.solid_angle * texel.tilt[k];
     }
     [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) {
         [[unroll]] for (int k = 0; k < 3; ++k) {

@@ -22,14 +22,23 @@ layout(std430, set = 0, binding = 2) readonly buffer Triangles { Triangle triang
 // Of the texels of a face, row by row, steradians.
 layout(std430, set = 0, binding = 3) readonly buffer SolidAngles { float solid_angles[]; };
 layout(std430, set = 0, binding = 4) buffer Lights { vec4 lights[]; };
+// RGB of the texels of all levels of all pictures.
+layout(std430, set = 0, binding = 6) readonly buffer Pictures { vec4 pictures[]; };
+#include "radiance/surface.glsl"
+layout(std430, set = 0, binding = 5) readonly buffer Surfaces { Surface surfaces[]; };
 #if GRADIENTS
-layout(std430, set = 0, binding = 5) buffer Gradients { vec4 gradients[]; };
+layout(std430, set = 0, binding = 7) buffer Gradients { vec4 gradients[]; };
 #endif
 
 layout(push_constant) uniform Settings {
     uint triangle_count;
     uint size; // texels along a side of a face
     uint keep_exact; // 1: samples that are exact already, or kept, are left alone
+    uint shown_first; // triangles from it on show pictures
+    uint shown_count;
+    float red; // extinction of the medium between, 1/m
+    float green;
+    float blue;
 } settings;
 
 #define SAMPLE_LIGHT(i) lights[(batch.first + gl_WorkGroupID.x) * uint(LIGHT_STRIDE) + (i)]
@@ -47,6 +56,20 @@ layout(push_constant) uniform Settings {
 
 #include "radiance/visible.glsl"
 
+// What a ray sees of a triangle that shows a picture; `depth` is the distance along the face's normal.
+vec3 shown_radiance(Tile tile, vec3 point, uint index, vec2 at, float depth)
+{
+    Surface surface = surfaces[index - settings.shown_first];
+    vec3 way = face_world(tile.face, vec3(at, 1.0));
+    vec3 corners[3];
+    for (int k = 0; k < 3; ++k) { corners[k] = triangles[index].corners[k].xyz - point; }
+    vec3 shares = vec3(dot(cross(corners[1], corners[2]), way), dot(cross(corners[2], corners[0]), way),
+        dot(cross(corners[0], corners[1]), way));
+    shares /= shares.x + shares.y + shares.z;
+    vec2 place = shares.x * surface.first.xy + shares.y * surface.first.zw + shares.z * surface.last.xy;
+    return surface_radiance(surface, place, log2(max(surface.last.z * tile.side * depth, 1e-30)));
+}
+
 // Means over the rays of a texel, from its first on. Triangles without radiance hide others, and are not there otherwise.
 Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
 {
@@ -57,9 +80,11 @@ Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
     texel.slope = vec3(0.0);
     texel.nearness = 0.0;
 #if GRADIENTS
+    texel.dimming = vec3(0.0);
     vec3 plane = vec3(0.0);
     [[unroll]] for (int k = 0; k < 3; ++k) { texel.tilt[k] = vec3(0.0); }
 #endif
+    vec3 extinction = vec3(settings.red, settings.green, settings.blue);
     vec3 radiance = vec3(0.0);
     vec2 middle = vec2(0.0);
     uint name = 0u;
@@ -78,10 +103,18 @@ Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
                 triangle.corners[2].xyz - point, side);
 #endif
         }
+        vec2 at = tile_at(tile, ray);
+        float along = uintBitsToFloat(tile_nearness[place]);
+        for (bool shown = next > settings.shown_first && next <= settings.shown_first + settings.shown_count; shown; shown = false) {
+            radiance = shown_radiance(tile, point, next - 1u, at, 1.0 / along);
+        }
         if (max(radiance.r, max(radiance.g, radiance.b)) > 0.0) {
-            vec2 at = tile_at(tile, ray);
-            float product = uintBitsToFloat(tile_nearness[place]) * inversesqrt(dot(at, at) + 1.0);
+            float product = along * inversesqrt(dot(at, at) + 1.0);
             float nearness = min(product, MOST_NEARNESS);
+            vec3 uniform_ = radiance;
+            for (bool dim = max(extinction.r, max(extinction.g, extinction.b)) > 0.0; dim; dim = false) {
+                radiance *= exp(-extinction / nearness);
+            }
             middle += at;
             texel.radiance += radiance;
             texel.covered += 1.0;
@@ -91,7 +124,9 @@ Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
             // plane / (plane . unit ray) is the tilt, and its denominator the nearness.
             vec3 tilt = (nearness / product) * plane;
             [[unroll]] for (int k = 0; k < 3; ++k) { texel.tilt[k] += tilt[k] * radiance; }
+            texel.dimming += extinction * radiance;
 #endif
+            radiance = uniform_;
         }
     }
     texel.direction = normalize(cube_direction(tile.face, 0.5 * (middle / max(texel.covered, 1.0)) + 0.5));

@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Light vectors of vertices from the samples whose domains hold them, as passes/radiance/src/reconstruct.rs has them:
-// weights ((R - d) / (R d))^2 of the nodes not split (Franke and Nielson, "Smooth Interpolation of Large Sets of Scattered
-// Data", 1980), each sample continued to first order (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for
+// weights ((R - d) / (R d))^2 / (1 + (d / H)^2)^4 of the nodes not split (Franke and Nielson, "Smooth Interpolation of Large
+// Sets of Scattered Data", 1980), H the distance of a sample's emitters, each sample continued to first order (Annen, Kautz, Durand, Seidel, "Spherical Harmonic Gradients for
 // Mid-Range Illumination", 2004).
 //
-// A workgroup has 256 vertices that are near one another, an invocation four that are nearer still. One walk of the tree
-// finds the samples for all of them; an invocation keeps those that any of its four needs, and what it reads of a sample serves
-// all four: reading takes longer than adding. A few coefficients at a time need neither many registers nor long unrolled code.
+// A workgroup has 256 vertices that are near one another, an invocation eight that are nearer still. One walk of the tree
+// finds the samples for all of them; an invocation keeps those that any of its eight needs, and what it reads of a sample
+// serves them all: reading takes longer than adding. A few coefficients at a time need neither all registers nor long code.
 //
 // ORDER      3 to 6
 // GRADIENTS  0 or 1: samples are continued by their gradients
@@ -17,8 +17,9 @@
 #include "radiance/sample.glsl"
 #include "radiance/tree.glsl"
 
-#define LANES 64
-#define FOUR 4 // vertices of an invocation, and coefficients that it takes at a time
+#define LANES 32
+#define EIGHT 8 // vertices of an invocation
+#define FOUR 4 // coefficients that it takes at a time
 layout(local_size_x = LANES) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Tree { Node nodes[]; } tree;
@@ -57,7 +58,7 @@ layout(push_constant) uniform Settings {
 const uint LIST = 256u;
 shared vec4 domains[LIST]; // centre and radius
 shared uint sampled[LIST];
-// Of each invocation a bit for each listed sample whose domain may hold one of its vertices: neighbours take different
+// Of each invocation a bit for each listed sample whose domain holds one of its vertices: neighbours take different
 // samples at once.
 shared int held[LIST / 32u * LANES];
 shared uint found;
@@ -94,56 +95,57 @@ void walk(vec4 ball)
     found = count;
 }
 
-// In units in which the largest domain is 1, so that no distance is too small for a float.
-float domain_weight(vec3 point, vec4 domain, float unit)
+// In units in which the largest domain is 1, so that no distance is too small for a float. `nearness` is 1 / H.
+float domain_weight(vec3 point, vec4 domain, float unit, float nearness)
 {
     float away = distance(point, domain.xyz);
     float near = max(away * unit, 1e-6);
     float edge = domain.w * unit;
-    float weight = max((edge - near) / (edge * near), 0.0);
+    float far = min(away * nearness, 8.0);
+    far = 1.0 + far * far;
+    float weight = max((edge - near) / (edge * near * (far * far)), 0.0);
     // A domain of one point: the vertex itself.
     weight = edge > 1e-6 ? weight * weight : 1e12;
     return away > domain.w ? 0.0 : weight;
 }
 
-// Finds which of the listed samples may hold a vertex of the invocation, by a ball about all four.
-void hold(vec3 points[FOUR], uint lane)
+// Finds which of the listed samples hold a vertex of the invocation.
+void hold(vec3 points[EIGHT], uint lane)
 {
-    vec3 centre = 0.25 * (points[0] + points[1] + points[2] + points[3]);
-    float radius = 0.0;
-    [[unroll]] for (int v = 0; v < FOUR; ++v) { radius = max(radius, distance(points[v], centre)); }
-    radius += 1e-6 * (radius + length(centre));
     for (uint begin = 0u; begin < found; begin += 32u) {
         int bits = 0;
         for (uint k = begin; k < min(found, begin + 32u); ++k) {
             vec4 domain = domains[k];
-            bits |= distance(centre, domain.xyz) <= domain.w * 1.000001 + radius ? 1 << int(k - begin) : 0;
+            float nearest = distance(points[0], domain.xyz);
+            [[unroll]] for (int v = 1; v < EIGHT; ++v) { nearest = min(nearest, distance(points[v], domain.xyz)); }
+            bits |= nearest <= domain.w ? 1 << int(k - begin) : 0;
         }
         held[begin / 32u * LANES + lane] = bits;
     }
 }
 
-// Adds to four coefficients from the first on, of four vertices, what a listed sample says of them.
-void add(inout vec3 sums[FOUR * FOUR], inout float totals[FOUR], vec3 points[FOUR], uint k, uint first)
+// Adds to four coefficients from the first on, of all vertices, what a listed sample says of them.
+void add(inout vec3 sums[EIGHT * FOUR], inout float totals[EIGHT], vec3 points[EIGHT], uint k, uint first)
 {
     uint last = uint(COEFFICIENTS) - 1u;
     vec4 domain = domains[k];
     uint light = sampled[k] * uint(LIGHT_STRIDE);
-    float weights[FOUR];
+    float weights[EIGHT];
     float unit = 1.0 / settings.largest;
-    [[unroll]] for (int v = 0; v < FOUR; ++v) {
-        weights[v] = domain_weight(points[v], domain, unit);
+    // Without light the distance of its emitters is infinite, and so are the steps allowed.
+    vec2 extent = lights.values[light + uint(LIGHT_EXTENT)].xy;
+    float nearness = extent.x > 0.0 ? extent.y / extent.x : 0.0;
+    [[unroll]] for (int v = 0; v < EIGHT; ++v) {
+        weights[v] = domain_weight(points[v], domain, unit, nearness);
         totals[v] += first == 0u ? weights[v] : 0.0;
     }
 #if GRADIENTS
-    vec2 extent = lights.values[light + uint(LIGHT_EXTENT)].xy;
     uint slope = sampled[k] * uint(GRADIENT_STRIDE);
-    vec3 steps[FOUR];
-    [[unroll]] for (int v = 0; v < FOUR; ++v) {
+    vec3 steps[EIGHT];
+    [[unroll]] for (int v = 0; v < EIGHT; ++v) {
         vec3 way = points[v] - domain.xyz;
         float far = length(way);
-        // Without light the distance is infinite, and so are the steps allowed.
-        float most = extent.y > 0.0 ? settings.trust * (extent.x / extent.y) : far;
+        float most = nearness > 0.0 ? settings.trust / nearness : far;
         steps[v] = weights[v] * (far > most ? most / far : 1.0) * way;
     }
 #endif
@@ -156,7 +158,7 @@ void add(inout vec3 sums[FOUR * FOUR], inout float totals[FOUR], vec3 points[FOU
         vec3 y = gradients.values[at + 1u].rgb;
         vec3 z = gradients.values[at + 2u].rgb;
 #endif
-        [[unroll]] for (int v = 0; v < FOUR; ++v) {
+        [[unroll]] for (int v = 0; v < EIGHT; ++v) {
             vec3 sum = weights[v] * value;
 #if GRADIENTS
             sum += steps[v].x * x + steps[v].y * y + steps[v].z * z;
@@ -167,7 +169,7 @@ void add(inout vec3 sums[FOUR * FOUR], inout float totals[FOUR], vec3 points[FOU
 }
 
 // Writes four coefficients of a vertex; those of a list before, if there was one, are there already.
-void write(vec3 sums[FOUR * FOUR], int v, uint light, uint first, float total, bool begun, bool more)
+void write(vec3 sums[EIGHT * FOUR], int v, uint light, uint first, float total, bool begun, bool more)
 {
     for (uint j = 0u; j < uint(FOUR) && first + j < uint(COEFFICIENTS); ++j) {
         uint at = light + 3u * (first + j);
@@ -185,11 +187,11 @@ void write(vec3 sums[FOUR * FOUR], int v, uint light, uint first, float total, b
 void main()
 {
     uint lane = gl_LocalInvocationID.x;
-    uint begin = uint(FOUR) * (gl_WorkGroupID.x * uint(LANES) + lane);
-    vec3 points[FOUR];
-    uint written[FOUR];
-    float totals[FOUR];
-    [[unroll]] for (int v = 0; v < FOUR; ++v) {
+    uint begin = uint(EIGHT) * (gl_WorkGroupID.x * uint(LANES) + lane);
+    vec3 points[EIGHT];
+    uint written[EIGHT];
+    float totals[EIGHT];
+    [[unroll]] for (int v = 0; v < EIGHT; ++v) {
         Vertex vertex = vertices.values[settings.first + min(begin + uint(v), settings.count - 1u)];
         points[v] = vertex.position;
         written[v] = 3u * uint(COEFFICIENTS) * vertex.place;
@@ -206,14 +208,14 @@ void main()
         more = next < settings.nodes;
         hold(points, lane);
         for (uint first = 0u; first < uint(COEFFICIENTS) && begin < settings.count; first += uint(FOUR)) {
-            vec3 sums[FOUR * FOUR];
-            [[unroll]] for (int i = 0; i < FOUR * FOUR; ++i) { sums[i] = vec3(0.0); }
+            vec3 sums[EIGHT * FOUR];
+            [[unroll]] for (int i = 0; i < EIGHT * FOUR; ++i) { sums[i] = vec3(0.0); }
             for (uint from = 0u; from < found; from += 32u) {
                 for (int bits = held[from / 32u * LANES + lane]; bits != 0; bits &= bits - 1) {
                     add(sums, totals, points, from + uint(findLSB(bits)), first);
                 }
             }
-            [[unroll]] for (int v = 0; v < FOUR; ++v) {
+            [[unroll]] for (int v = 0; v < EIGHT; ++v) {
                 if (begin + uint(v) < settings.count) {
                     write(sums, v, written[v], first, totals[v], begun, more);
                 }

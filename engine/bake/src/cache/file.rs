@@ -1,25 +1,25 @@
-//! The cache file: safetensors with one metadata entry, checked from the outside in.
+//! The cache file of a bake.
 
-use std::collections::HashMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use half::f16;
-use safetensors::tensor::{Dtype, SafeTensors, TensorView};
-use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use super::CacheKey;
+use super::container::{Container, Element, Field, Opened};
 use crate::Transfer;
 use crate::settings::MAX_ORDER;
 
 /// Version of the layout and of the meaning of the numbers in it. It rises whenever a bake of the same input
 /// would come out differently.
 pub const SCHEMA: u32 = 1;
-/// Name of the metadata entry.
-const ENTRY: &str = "airglow.bake";
+const CONTAINER: Container = Container { entry: "airglow.bake", schema: SCHEMA };
 /// Names of the tensors.
 const TRANSFER: &str = "transfer";
 const VISIBILITY: &str = "visibility";
+/// Names of what the metadata entry says.
+const ORDER: &str = "order";
+const VERTICES: &str = "vertices";
 
 /// How coefficients are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,10 +44,10 @@ pub enum Miss {
     #[error("the cache file is damaged: {0}")]
     Damaged(String),
     /// A sound safetensors file that is no bake.
-    #[error("the file is not a bake cache of airglow")]
+    #[error("the file is not such a cache of airglow")]
     Foreign,
     /// Written by another version.
-    #[error("the cache file has schema {found}, this version writes {SCHEMA}")]
+    #[error("the cache file has schema {found}, which this version does not write")]
     OtherSchema {
         /// Its schema.
         found: u32,
@@ -65,7 +65,7 @@ pub enum Miss {
 #[non_exhaustive]
 pub enum CacheError {
     /// The system refused.
-    #[error("cannot write the bake cache {path}: {source}; check that its folder exists and has room")]
+    #[error("cannot write the cache {path}: {source}; check that its folder exists and has room")]
     Write {
         /// The target.
         path: PathBuf,
@@ -81,19 +81,8 @@ pub enum CacheError {
         expected: usize,
     },
     /// The container library refused.
-    #[error("cannot encode the bake cache: {0}")]
+    #[error("cannot encode the cache: {0}")]
     Encode(String),
-}
-
-/// The metadata entry, as JSON.
-#[derive(Serialize, Deserialize)]
-struct Description {
-    schema: u32,
-    key: String,
-    order: usize,
-    vertices: usize,
-    /// BLAKE3 of the tensors' bytes, transfer first.
-    data: String,
 }
 
 impl Precision {
@@ -105,10 +94,10 @@ impl Precision {
         }
     }
 
-    fn dtype(self) -> Dtype {
+    fn element(self) -> Element {
         match self {
-            Self::F32 => Dtype::F32,
-            Self::F16 => Dtype::F16,
+            Self::F32 => Element::F32,
+            Self::F16 => Element::F16,
         }
     }
 
@@ -144,46 +133,21 @@ pub fn store(
     let vectors = std::iter::once((TRANSFER, &transfer.coefficients))
         .chain(transfer.visibility.as_ref().map(|values| (VISIBILITY, values)));
     let mut tensors = Vec::new();
-    let mut hasher = blake3::Hasher::new();
     for (name, values) in vectors {
         if values.len() != expected {
             return Err(CacheError::Shape { found: values.len(), expected });
         }
-        let bytes = precision.encode(values);
-        hasher.update(&bytes);
-        tensors.push((name, bytes));
+        tensors.push((name, precision.encode(values)));
     }
-    let description = Description {
-        schema: SCHEMA,
-        key: key.to_hex(),
-        order: transfer.order,
-        vertices: transfer.vertex_count,
-        data: hasher.finalize().to_hex().to_string(),
-    };
-    let encode = |error: &dyn std::fmt::Display| CacheError::Encode(error.to_string());
-    let text = serde_json::to_string(&description).map_err(|error| encode(&error))?;
     let shape = vec![transfer.vertex_count, transfer.coefficient_count()];
-    let mut views = Vec::new();
-    for (name, bytes) in &tensors {
-        let view =
-            TensorView::new(precision.dtype(), shape.clone(), bytes).map_err(|error| encode(&error))?;
-        views.push((*name, view));
-    }
-    let metadata = HashMap::from([(ENTRY.to_owned(), text)]);
-    let bytes = safetensors::serialize(views, Some(metadata)).map_err(|error| encode(&error))?;
-    write_whole(path, &bytes).map_err(|source| CacheError::Write { path: path.to_owned(), source })
-}
-
-fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    let fields: Vec<_> = tensors
+        .iter()
+        .map(|(name, bytes)| Field { name, element: precision.element(), shape: shape.clone(), bytes })
+        .collect();
+    let mut description = Map::new();
+    description.insert(ORDER.to_owned(), transfer.order.into());
+    description.insert(VERTICES.to_owned(), transfer.vertex_count.into());
+    CONTAINER.store(path, &key.to_hex(), description, &fields)
 }
 
 /// Reads the bake with this key.
@@ -191,58 +155,28 @@ fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 /// # Errors
 /// [`Miss`] says why the file cannot be used.
 pub fn load(path: &Path, key: &CacheKey, precision: Precision) -> Result<Transfer, Miss> {
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => Miss::Absent,
-        _ => Miss::Unreadable(error),
-    })?;
-    let damaged = |error: &dyn std::fmt::Display| Miss::Damaged(error.to_string());
-    let (_, header) = SafeTensors::read_metadata(&bytes).map_err(|error| damaged(&error))?;
-    let text = header.metadata().as_ref().and_then(|entries| entries.get(ENTRY)).ok_or(Miss::Foreign)?;
-    // The schema is read on its own: other versions may describe themselves otherwise.
-    let value: serde_json::Value = serde_json::from_str(text).map_err(|error| damaged(&error))?;
-    match value.get("schema").and_then(serde_json::Value::as_u64) {
-        Some(schema) if schema == u64::from(SCHEMA) => {}
-        Some(schema) => return Err(Miss::OtherSchema { found: u32::try_from(schema).unwrap_or(u32::MAX) }),
-        None => return Err(Miss::Foreign),
-    }
-    let description: Description = serde_json::from_value(value).map_err(|error| damaged(&error))?;
-    if description.key != key.to_hex() {
-        return Err(Miss::OtherInput);
-    }
-    let tensors = SafeTensors::deserialize(&bytes).map_err(|error| damaged(&error))?;
-    read_tensors(&tensors, &description, precision)
+    let bytes = Container::read(path)?;
+    read_tensors(CONTAINER.open(&bytes, &key.to_hex())?, precision)
 }
 
-fn read_tensors(
-    tensors: &SafeTensors<'_>,
-    description: &Description,
-    precision: Precision,
-) -> Result<Transfer, Miss> {
-    let damaged = |what: &str| Miss::Damaged(what.to_owned());
-    if !(1..=MAX_ORDER).contains(&description.order) {
-        return Err(damaged("its order is outside 1..=6"));
-    }
-    let shape = [description.vertices, description.order * description.order];
-    let mut hasher = blake3::Hasher::new();
-    let mut read = |name: &str| -> Result<Vec<f32>, Miss> {
-        let tensor = tensors.tensor(name).map_err(|error| Miss::Damaged(error.to_string()))?;
-        if tensor.shape() != shape {
-            return Err(damaged("a tensor's shape differs from its description"));
-        }
-        if tensor.dtype() != precision.dtype() {
-            return Err(match tensor.dtype() {
-                Dtype::F32 | Dtype::F16 => Miss::OtherPrecision,
-                _ => damaged("a tensor is neither f32 nor f16"),
-            });
-        }
-        hasher.update(tensor.data());
-        Ok(precision.decode(tensor.data()))
+fn read_tensors(mut file: Opened<'_>, precision: Precision) -> Result<Transfer, Miss> {
+    let number =
+        |name: &str| file.description.get(name).and_then(Value::as_u64).map(|number| number as usize);
+    let (Some(order), Some(vertex_count)) = (number(ORDER), number(VERTICES)) else {
+        return Err(Miss::Damaged("its order or its number of vertices is missing".to_owned()));
     };
-    let coefficients = read(TRANSFER)?;
-    let visibility = if tensors.names().contains(&VISIBILITY) { Some(read(VISIBILITY)?) } else { None };
-    if hasher.finalize().to_hex().as_str() != description.data {
-        return Err(damaged("its checksum does not fit its data"));
+    if !(1..=MAX_ORDER).contains(&order) {
+        return Err(Miss::Damaged("its order is outside 1..=6".to_owned()));
     }
-    let (order, vertex_count) = (description.order, description.vertices);
+    let shape = [vertex_count, order * order];
+    let read = |file: &mut Opened<'_>, name: &str| match file.field(name, &shape)? {
+        (element, bytes) if element == precision.element() => Ok(precision.decode(bytes)),
+        (Element::F32 | Element::F16, _) => Err(Miss::OtherPrecision),
+        (Element::U32, _) => Err(Miss::Damaged("a tensor is neither f32 nor f16".to_owned())),
+    };
+    let coefficients = read(&mut file, TRANSFER)?;
+    let seen = file.has(VISIBILITY);
+    let visibility = if seen { Some(read(&mut file, VISIBILITY)?) } else { None };
+    file.check()?;
     Ok(Transfer { order, vertex_count, coefficients, visibility })
 }

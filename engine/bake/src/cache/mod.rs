@@ -3,6 +3,7 @@
 //! The layout is in this crate's README. A file is written beside its target and renamed, so that it is whole or
 //! absent; whatever cannot be used, for a reason that is told, is baked again.
 
+pub mod container;
 mod file;
 mod key;
 

@@ -44,7 +44,7 @@ pub(crate) const BALL: Sphere =
     Sphere { centre: DVec3::new(15.0, 4.0, 10.0), radius: 0.5, radiance: DVec3::splat(9.0) };
 
 /// All lights, by Rust.
-pub(crate) const LIGHTS: Lights<'_> = Lights { emitters: &[LAMP], spheres: &[BALL], distant: &[] };
+pub(crate) const LIGHTS: Lights<'_> = Lights { emitters: &[LAMP], spheres: &[BALL], ..Lights::NONE };
 
 fn turn() -> DMat3 {
     DMat3::from_rotation_x(0.4)

@@ -66,7 +66,7 @@ pub(super) struct Given<'a> {
 
 impl Given<'_> {
     pub(super) fn lights(&self) -> Lights<'_> {
-        Lights { emitters: &self.emitters, spheres: &self.spheres, distant: self.distant }
+        Lights { emitters: &self.emitters, spheres: &self.spheres, distant: self.distant, ..Lights::NONE }
     }
 }
 

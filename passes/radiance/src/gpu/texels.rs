@@ -131,7 +131,8 @@ impl Texels {
     /// # Errors
     /// [`GpuError::Misuse`] for buffers that do not fit.
     pub fn record(&self, recorder: &mut Recorder<'_>, buffers: &TexelBuffers) -> Result<(), GpuError> {
-        let TexelBuffers { triangle_count, flat_count, sphere_count, kept, shown_count, extinction, .. } = *buffers;
+        let TexelBuffers { triangle_count, flat_count, sphere_count, kept, shown_count, extinction, .. } =
+            *buffers;
         let bodies = flat_count.saturating_add(sphere_count);
         let plain = shown_count == 0 && extinction == [0.0; 3];
         let analytic = self.analytic.as_ref().filter(|_| bodies <= MOST_ANALYTIC && plain);

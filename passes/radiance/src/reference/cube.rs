@@ -10,7 +10,8 @@ use glam::{DMat3, DVec3};
 
 use super::slope::slopes;
 
-use crate::{Incident, RadianceError, Triangle};
+use crate::shown::Pyramid;
+use crate::{Incident, Lights, RadianceError, Triangle};
 
 /// Cube maps of one face size, projected to one order.
 #[derive(Clone, Debug)]
@@ -35,6 +36,15 @@ struct Seen {
     /// The triangle's normal over its product with the unit ray.
     tilt: DVec3,
 }
+
+/// Where a ray meets a triangle: the shares of its corners, and the distance along the face's normal.
+struct Hit {
+    shares: [f64; 3],
+    depth: f64,
+}
+
+/// What a triangle, by its number, sends to a ray, where that is not its one radiance.
+type Shows<'a> = dyn Fn(usize, &Hit) -> Option<DVec3> + 'a;
 
 const EMPTY: Seen = Seen { distance: f64::INFINITY, radiance: DVec3::ZERO, tilt: DVec3::ZERO };
 
@@ -93,6 +103,33 @@ impl Cube {
     /// # Errors
     /// None that [`Cube::new`] has not found.
     pub fn sample(&self, point: DVec3, triangles: &[Triangle]) -> Result<Incident, RadianceError> {
+        self.seen(point, triangles, &|_, _| None, DVec3::ZERO)
+    }
+
+    /// The same of all that lights are: pictures are read where rays meet them, and a medium dims what it is before.
+    ///
+    /// # Errors
+    /// [`RadianceError::Length`] and [`RadianceError::Value`] for faulty pictures.
+    pub fn sample_lights(&self, point: DVec3, lights: &Lights<'_>) -> Result<Incident, RadianceError> {
+        lights.check()?;
+        let pyramids: Vec<_> = lights.pictures.iter().map(Pyramid::new).collect::<Result<_, _>>()?;
+        let width = 2.0 / self.fine() as f64;
+        let shows = |number: usize, hit: &Hit| {
+            let shown = lights.shown.get(number.checked_sub(lights.emitters.len())?)?;
+            let places = shown.places.iter().zip(hit.shares).map(|(place, share)| share * *place);
+            let texels = shown.density(lights.pictures[shown.picture].size) * width * hit.depth;
+            Some(pyramids[shown.picture].at(places.sum(), texels.max(1e-30).log2()))
+        };
+        self.seen(point, &lights.triangles(), &shows, DVec3::from(lights.extinction.map(f64::from)))
+    }
+
+    fn seen(
+        &self,
+        point: DVec3,
+        triangles: &[Triangle],
+        shows: &Shows<'_>,
+        extinction: DVec3,
+    ) -> Result<Incident, RadianceError> {
         let mut incident = Incident::dark(self.order)?;
         if !self.slopes.is_empty() {
             incident.gradients = vec![DMat3::ZERO; incident.coefficients.len()];
@@ -100,10 +137,13 @@ impl Cube {
         let mut seen = vec![EMPTY; self.fine() * self.fine()];
         for face in Face::ALL {
             seen.fill(EMPTY);
-            for triangle in triangles {
-                self.rasterise(face, point, triangle, &mut seen);
+            for (number, triangle) in triangles.iter().enumerate() {
+                self.rasterise(face, point, triangle, &|hit| shows(number, hit), &mut seen);
             }
-            self.project(face, &seen, &mut incident)?;
+            for ray in seen.iter_mut().filter(|ray| extinction != DVec3::ZERO && ray.distance.is_finite()) {
+                ray.radiance *= (-extinction * ray.distance).exp();
+            }
+            self.project(face, &seen, extinction, &mut incident)?;
         }
         Ok(incident)
     }
@@ -114,10 +154,18 @@ impl Cube {
     }
 
     /// Keeps, in each ray of a face, the triangle if it is nearer than what is there.
-    fn rasterise(&self, face: Face, point: DVec3, triangle: &Triangle, seen: &mut [Seen]) {
+    fn rasterise(
+        &self,
+        face: Face,
+        point: DVec3,
+        triangle: &Triangle,
+        shows: &dyn Fn(&Hit) -> Option<DVec3>,
+        seen: &mut [Seen],
+    ) {
         let [mut a, mut b, c] = triangle.corners.map(|corner| corner - point);
         let mut volume = a.dot(b.cross(c));
-        if volume < 0.0 {
+        let turned = volume < 0.0;
+        if turned {
             (a, b, volume) = (b, a, -volume);
         }
         let Some([columns, rows]) = self.rectangle(face, [a, b, c]) else { return };
@@ -138,7 +186,10 @@ impl Cube {
                 let nearest = &mut seen[y * self.fine() + x];
                 if distance < nearest.distance {
                     let tilt = ray.length() / along * normal;
-                    *nearest = Seen { distance, radiance: triangle.radiance, tilt };
+                    let [first, second, third] = weights.map(|weight| weight / along);
+                    let shares = if turned { [second, first, third] } else { [first, second, third] };
+                    let radiance = shows(&Hit { shares, depth: volume / along }).unwrap_or(triangle.radiance);
+                    *nearest = Seen { distance, radiance, tilt };
                 }
             }
         }
@@ -167,7 +218,13 @@ impl Cube {
         Some([range(right), range(down)])
     }
 
-    fn project(&self, face: Face, seen: &[Seen], incident: &mut Incident) -> Result<(), RadianceError> {
+    fn project(
+        &self,
+        face: Face,
+        seen: &[Seen],
+        extinction: DVec3,
+        incident: &mut Incident,
+    ) -> Result<(), RadianceError> {
         for (texel, solid_angle) in self.solid_angles.iter().enumerate() {
             let [x, y] = [texel % self.size, texel / self.size].map(|place| place * self.rays);
             let share = solid_angle / (self.rays * self.rays) as f64;
@@ -194,14 +251,10 @@ impl Cube {
             let [right, down, normal] = face.axes();
             let ray = (normal + at[0] * right + at[1] * down).normalize();
             let whole = count == self.rays * self.rays;
-            self.add(
-                face as usize * self.solid_angles.len() + texel,
-                whole,
-                ray,
-                [power, slope],
-                tilt,
-                incident,
-            )?;
+            let place = face as usize * self.solid_angles.len() + texel;
+            // A medium dims less when the way is shorter: what a step along the ray adds.
+            let along = 3.0 * slope + extinction * power;
+            self.add(place, whole, ray, [power, slope, along], tilt, incident)?;
         }
         Ok(())
     }
@@ -214,7 +267,7 @@ impl Cube {
         place: usize,
         whole: bool,
         ray: DVec3,
-        [power, slope]: [DVec3; 2],
+        [power, slope, along]: [DVec3; 3],
         tilt: DMat3,
         incident: &mut Incident,
     ) -> Result<(), RadianceError> {
@@ -228,7 +281,7 @@ impl Cube {
         if self.slopes.is_empty() {
             return Ok(());
         }
-        let change = DMat3::from_cols(ray.x * slope, ray.y * slope, ray.z * slope) * 3.0 - tilt;
+        let change = DMat3::from_cols(ray.x * along, ray.y * along, ray.z * along) - tilt;
         let slopes = if whole { self.slopes[range].to_vec() } else { slopes(self.order, ray, &values) };
         for (gradient, (y, s)) in incident.gradients.iter_mut().zip(values.iter().zip(slopes)) {
             *gradient += change * *y - DMat3::from_cols(s.x * slope, s.y * slope, s.z * slope);

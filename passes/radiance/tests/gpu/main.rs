@@ -10,6 +10,7 @@ mod pass;
 mod receivers;
 mod scenes;
 mod stability;
+mod surfaces;
 mod texels;
 mod world;
 

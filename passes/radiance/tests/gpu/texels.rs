@@ -2,7 +2,7 @@
 
 use airglow_math::statistics::relative_l2;
 use airglow_radiance::gpu::kernels::{TEXEL_BINDINGS, TexelConstants};
-use airglow_radiance::gpu::{Batch, EmitterTriangle, LightShape, TexelSettings, Texels};
+use airglow_radiance::gpu::{Batch, DeviceSurface, EmitterTriangle, LightShape, TexelSettings, Texels};
 use airglow_radiance::reference::{Cube, sphere, triangles};
 use airglow_radiance::{Incident, Lights, Sphere, Triangle};
 use airglow_tests::host_layout;
@@ -32,7 +32,7 @@ fn numbers(incident: &Incident) -> [(&'static str, Vec<f64>); 4] {
 
 /// Prints and holds the relative errors of each group over all samples.
 #[track_caller]
-fn check(what: &str, found: &[Incident], truth: &[Incident], bound: f64) {
+pub fn check(what: &str, found: &[Incident], truth: &[Incident], bound: f64) {
     for group in 0..4 {
         let all = |samples: &[Incident]| -> Vec<f64> {
             samples.iter().flat_map(|sample| numbers(sample)[group].1.clone()).collect()
@@ -78,16 +78,27 @@ fn rays_tend_to_the_closed_form() {
 
 #[test]
 fn host_structs_are_as_the_compiler_laid_them_out() {
-    for (name, bindings) in [("ORDER4.RAYS4", 5), ("GRADIENTS.ORDER6.RAYS1", 6)] {
+    for (name, bindings) in [("ORDER4.RAYS4", 7), ("GRADIENTS.ORDER6.RAYS1", 8)] {
         let module = Module::load(&format!("radiance/texels.{name}.spv")).unwrap();
         module.assert_bindings(&TEXEL_BINDINGS[..bindings]);
-        let constants = host_layout!(TexelConstants { triangle_count, size, keep_exact });
+        let constants = host_layout!(TexelConstants {
+            triangle_count,
+            size,
+            keep_exact,
+            shown_first,
+            shown_count,
+            red,
+            green,
+            blue
+        });
         module.push_constants.as_ref().unwrap().assert_matches(&constants);
         let block = |binding: usize| module.bindings[binding].block.as_ref().unwrap();
         let batch = block(0).members[0].block.as_ref().unwrap();
         batch.assert_matches(&host_layout!(Batch { count, height, depth, first }));
         let triangle = block(2).members[0].block.as_ref().unwrap();
         triangle.assert_matches(&host_layout!(EmitterTriangle { corners }));
+        let surface = block(5).members[0].block.as_ref().unwrap();
+        surface.assert_matches(&host_layout!(DeviceSurface { first, last, picture }));
     }
 }
 

@@ -42,6 +42,8 @@ pub mod mapped;
 pub mod moving;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod near;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod near_tree;
 #[cfg(feature = "relight")]
 pub mod over;
 #[cfg(feature = "relight")]

@@ -152,7 +152,11 @@ impl NearLight {
         }
         let settings = settings(scene);
         let placed = Placed::new(scene, transfer);
-        let receiver = Receiver::new(context, settings, &placed.tree()?, &placed.positions, &placed.parts)
+        let tree = match &transfer.tree {
+            Some(tree) if tree.vertices().len() == placed.positions.len() => tree.clone(),
+            _ => placed.tree()?,
+        };
+        let receiver = Receiver::new(context, settings, &tree, &placed.positions, &placed.parts)
             .map_err(Failure::work)?;
         let distant = match &scene.environment {
             Some(environment) => distant(environment, settings.order)?,
@@ -193,7 +197,7 @@ impl NearLight {
     }
 
     fn lights<'a>(&'a self, distant: &'a [[f32; 3]]) -> Lights<'a> {
-        Lights { emitters: &self.triangles, spheres: &self.spheres, distant }
+        Lights { emitters: &self.triangles, spheres: &self.spheres, distant, ..Lights::NONE }
     }
 
     /// What the samples of the last frame took, once it is done.

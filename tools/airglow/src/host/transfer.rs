@@ -27,6 +27,9 @@ pub struct SceneTransfer {
     /// The spheres of what moves.
     #[cfg(all(feature = "relight", feature = "shadow"))]
     pub spheres: Vec<super::spheres::InstanceSpheres>,
+    /// The radiance pass's tree over all vertices, where there are emitters; built later for plans alone.
+    #[cfg(all(feature = "relight", feature = "radiance"))]
+    pub tree: Option<airglow::radiance::Hierarchy>,
     /// Whether the pass is to count bad texels of the environment.
     pub health: bool,
 }
@@ -101,6 +104,8 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
         accounts: Vec::new(),
         #[cfg(all(feature = "relight", feature = "shadow"))]
         spheres: super::spheres::of_scene(scene, cache, output)?,
+        #[cfg(all(feature = "relight", feature = "radiance"))]
+        tree: None,
         health: false,
     };
     for (index, job) in jobs.iter().enumerate() {
@@ -108,6 +113,10 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
         let (transfer, account) = bake(job, quality, seen, cache, output)?;
         result.transfers.push(transfer);
         result.accounts.push(account);
+    }
+    #[cfg(all(feature = "relight", feature = "radiance"))]
+    {
+        result.tree = super::near_tree::of_scene(scene, &result, cache, output)?;
     }
     Ok(result)
 }
@@ -124,6 +133,8 @@ pub fn unbaked(scene: &Scene) -> Outcome<SceneTransfer> {
         accounts: Vec::new(),
         #[cfg(all(feature = "relight", feature = "shadow"))]
         spheres: super::spheres::unfitted(scene)?,
+        #[cfg(all(feature = "relight", feature = "radiance"))]
+        tree: None,
         health: false,
     };
     for job in &jobs {
