@@ -1,9 +1,11 @@
-//! `airglow film`: a scene while its figures walk, frame by frame, and how steady the frames are.
+//! `airglow film`: a scene while its figures walk and its lamps move, frame by frame, and how steady the frames are.
 
 use std::path::PathBuf;
 
+use airglow_scene::Scene;
 use airglow_scene::image_io::write_png_bytes;
 use clap::Args;
+use glam::{Mat4, Vec3};
 use serde::Serialize;
 
 use crate::cli::Global;
@@ -18,14 +20,16 @@ use crate::output::Output;
 use crate::report::model::Machine;
 use crate::report::steadiness;
 
-/// Draw a scene while its figures walk: every frame as PNG, a strip of some, and how much each differs from the one before.
+/// Draw a scene while its figures walk and its emitters go their ways: every frame as PNG, a strip of some, and how much
+/// each differs from the one before.
 ///
 /// Only pixels that no figure covers count where steadiness is meant: those that are the same bits in three frames
 /// without shadows. Of them, smooth shadows have second differences far below the first ones; frames that flicker at
-/// random have them 1.73 times as large.
+/// random have them 1.73 times as large. Where emitters move, or the camera, no pixel stays the same, and none is counted.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
-  airglow film assets/scenes/walkers.toml -o out/walk --frames 60 --step 0.02 --size 480x270")]
+  airglow film assets/scenes/walkers.toml -o out/walk --frames 60 --step 0.02 --size 480x270
+  airglow film assets/scenes/demo.toml -o out/dusk --frames 24 --step 0.1 --fly 0.5,0,1")]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneOptions,
@@ -44,6 +48,9 @@ pub struct Arguments {
     /// Seconds from one frame to the next.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.02)]
     step: f64,
+    /// Way of the camera over the whole film: metres to its right, upwards and forwards.
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, allow_hyphen_values = true)]
+    fly: Option<Vec<f32>>,
     /// Frames of the strip.
     #[arg(long, value_name = "FRAMES", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=12))]
     strip: u32,
@@ -80,19 +87,23 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             time: arguments.scene.time,
             ..start
         };
-        arguments.draw(&mut renderer, &settings, output, device.machine())
+        arguments.draw(&mut renderer, &settings, &scene, output, device.machine())
     })?;
-    let plot = steadiness::svg(&film.first, &film.second)?;
-    files::write(&arguments.output.join("difference.svg"), plot.as_bytes())?;
+    if !film.second.is_empty() {
+        let plot = steadiness::svg(&film.first, &film.second)?;
+        files::write(&arguments.output.join("difference.svg"), plot.as_bytes())?;
+    }
     let json = serde_json::to_vec_pretty(&film).map_err(Failure::work)?;
     files::write(&arguments.output.join("film.json"), &json)?;
     output.result(&film, |film| {
+        let written =
+            format!("{} frames, {} s apart, in {}", film.frames, film.step, arguments.output.display());
+        if film.second.is_empty() {
+            return written;
+        }
         format!(
-            "{} frames, {} s apart, in {}\nfirst differences {:.2e}, second {:.2e} of the mean radiance where no figure is: \
+            "{written}\nfirst differences {:.2e}, second {:.2e} of the mean radiance where no figure is: \
              unsteadiness {:.2} (1.73 would be noise)",
-            film.frames,
-            film.step,
-            arguments.output.display(),
             mean(&film.first),
             mean(&film.second),
             film.unsteadiness
@@ -105,18 +116,23 @@ impl Arguments {
         &self,
         renderer: &mut Renderer<'_>,
         settings: &Settings,
+        scene: &Scene,
         output: &Output,
         machine: Machine,
     ) -> Outcome<Film> {
         let bar = output.progress("frames", self.frames.into(), "frames");
         let (mut last, mut strip) = (Vec::new(), Vec::new());
         let (mut picture, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
+        let stays = self.fly.is_none() && scene.emitters.iter().all(|emitter| emitter.to.is_none());
         for frame in 0..self.frames {
+            self.move_along(renderer, scene, frame as f32 / (self.frames - 1) as f32);
             let time = settings.time + self.step * f64::from(frame);
             let shown = renderer.draw(&Settings { time, ..*settings }, 1)?;
-            let plain = renderer.draw(&Settings { time, without_shadow: true, ..*settings }, 1)?;
             write_frame(&self.output.join(format!("frame-{frame:03}.png")), &shown)?;
-            last.push([shown.linear.pixels.clone(), plain.linear.pixels]);
+            if stays {
+                let plain = renderer.draw(&Settings { time, without_shadow: true, ..*settings }, 1)?;
+                last.push([shown.linear.pixels.clone(), plain.linear.pixels]);
+            }
             if strip.len() < self.strip as usize && frame * self.strip >= strip.len() as u32 * self.frames {
                 strip.push(shown);
             }
@@ -137,6 +153,18 @@ impl Arguments {
         write_png_bytes(&path, linear.width, linear.height, &display).map_err(Failure::work)?;
         let unsteadiness = mean(&second) / mean(&first).max(f64::MIN_POSITIVE);
         Ok(Film { machine, frames: self.frames, step: self.step, picture, first, second, unsteadiness })
+    }
+
+    /// Moves emitters and camera to `part` of their ways.
+    fn move_along(&self, renderer: &mut Renderer<'_>, scene: &Scene, part: f32) {
+        #[cfg(feature = "radiance")]
+        renderer.move_emitters(part);
+        if let Some([right, up, forwards]) = self.fly.as_deref().and_then(|way| way.first_chunk()) {
+            let mut camera = scene.camera();
+            let way = part * Vec3::new(*right, *up, -forwards);
+            camera.transform *= Mat4::from_translation(way);
+            renderer.look(camera);
+        }
     }
 }
 

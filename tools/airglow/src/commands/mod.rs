@@ -31,6 +31,8 @@ pub mod stability;
 pub mod view;
 #[cfg(feature = "relight")]
 pub mod what_if;
+#[cfg(feature = "relight")]
+pub mod without;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Outcome;

@@ -5,15 +5,13 @@ use clap::{Args, ValueEnum};
 use glam::DQuat;
 
 use crate::cli::Global;
-use crate::commands::render::PassName;
 use crate::commands::scene::SceneOptions;
 use crate::commands::what_if;
+use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
-#[cfg(feature = "shadow")]
-use crate::host::shadow;
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
 use crate::report::presets::table::{self, Row};
@@ -38,9 +36,8 @@ pub struct Arguments {
     /// How the plan is written. JSON too with --json.
     #[arg(long = "as", value_enum, default_value_t = Form::Text)]
     form: Form,
-    /// Leave a pass out.
-    #[arg(long, value_enum)]
-    without: Option<PassName>,
+    #[command(flatten)]
+    left_out: Without,
     /// Draw a few frames, and list time and counts of each pass. With --without also the time that leaving it out
     /// saves: it is baked and drawn with, and dropped again.
     #[arg(long)]
@@ -70,13 +67,9 @@ pub enum Form {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
-    let scene = arguments.scene.load(output)?;
-    #[cfg(feature = "shadow")]
-    let scene = match arguments.without {
-        Some(PassName::Shadow) => shadow::without(scene),
-        _ => scene,
-    };
-    let (without, cache) = (arguments.without == Some(PassName::Relight), &arguments.scene.cache);
+    let loaded = arguments.scene.load(output)?;
+    let scene = arguments.left_out.scene(loaded.clone());
+    let (without, cache) = (arguments.left_out.has(PassName::Relight), &arguments.scene.cache);
     let settings = frame(arguments);
     if !arguments.what_if.is_empty() {
         return what_if::run(&scene, &settings, &arguments.what_if, global, output);
@@ -92,6 +85,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         };
         let mut renderer = Renderer::new(device, &scene, &source, settings.picture_size())?;
         renderer.say_relight_takes(seconds);
+        arguments.left_out.say(&mut renderer, &loaded);
         let plan = renderer.plan(&settings)?;
         if arguments.check {
             let report = airglow_checker::check(&plan).map_err(Failure::check)?;
@@ -127,12 +121,12 @@ fn frame(arguments: &Arguments) -> Settings {
         exposure: 1.0,
         turn: DQuat::IDENTITY,
         spin: 0.0,
-        without_shadow: arguments.without == Some(PassName::Shadow),
+        without_shadow: arguments.left_out.has(PassName::Shadow),
         count_shadow: false,
         time: arguments.scene.time,
         step: 0.0,
-        without_relight: arguments.without == Some(PassName::Relight),
-        air: Air::with_fog(arguments.without != Some(PassName::Fog)),
+        without_relight: arguments.left_out.has(PassName::Relight),
+        air: Air::with_fog(!arguments.left_out.has(PassName::Fog)),
         window: None,
     }
 }

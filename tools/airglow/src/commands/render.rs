@@ -9,14 +9,14 @@ use glam::DQuat;
 
 use crate::cli::Global;
 use crate::commands::scene::SceneOptions;
+use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
 use crate::files;
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
 use crate::host::lighting::Source;
 use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
-#[cfg(feature = "shadow")]
-use crate::host::shadow;
+use crate::host::split::Split;
 #[cfg(feature = "radiance")]
 use crate::host::strip;
 #[cfg(feature = "fog")]
@@ -38,7 +38,7 @@ use crate::output::Output;
   airglow render assets/scenes/spot.toml -o spot.exr --size 1920x1080 --stat spot.json --frames 200
   airglow render assets/scenes/spot.toml -o spot.png --frames 60 --trace spot.trace.json
   airglow render assets/scenes/spot.toml -o ambient.png --without relight
-  airglow render assets/scenes/demo.toml -o both.png --without relight --split
+  airglow render assets/scenes/demo.toml -o both.png --without relight --without fog --split=diagonal
   airglow render assets/scenes/demo.toml -o pair.png --views 2
   airglow render assets/scenes/street.toml -o airs.png --compare-fog --size 640x540
   airglow render assets/scenes/lamp.toml -o lamp.png --strip 5 --size 320x360
@@ -86,12 +86,11 @@ pub struct Arguments {
     /// Average so many passes into the picture, each moved by a fraction of a sample: hundreds of samples a pixel.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096), conflicts_with_all = ["split", "views"])]
     passes: u32,
-    /// Leave a pass out: the picture shows what it adds. Without relight, light comes evenly from everywhere.
-    #[arg(long, value_enum)]
-    without: Option<PassName>,
-    /// With --without: show the left half of the picture without the pass and the right half with it.
-    #[arg(long, requires = "without")]
-    split: bool,
+    #[command(flatten)]
+    left_out: Without,
+    /// With --without: show the left half of the picture without the passes and the right half with them.
+    #[arg(long, requires = "without", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "half")]
+    split: Option<Split>,
     /// Draw the scene's medium as exponential depth fog, of the mean colour of the picture by the fog pass.
     #[cfg(feature = "fog")]
     #[arg(long, conflicts_with_all = ["without", "compare_fog"])]
@@ -129,17 +128,6 @@ pub struct Arguments {
     trace: Option<PathBuf>,
 }
 
-/// Passes that a host can leave out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum PassName {
-    /// Relighting by precomputed radiance transfer.
-    Relight,
-    /// Scattering in the scene's medium; without it the air is clear.
-    Fog,
-    /// Soft shadows of what moves; without it figures cast none.
-    Shadow,
-}
-
 /// Where the complete model is evaluated.
 #[cfg(feature = "fog")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -155,15 +143,14 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     for path in &arguments.output {
         check_extension(path)?;
     }
-    let scene = arguments.scene.load(output)?;
-    #[cfg(feature = "shadow")]
-    let scene = match arguments.without == Some(PassName::Shadow) && !arguments.split {
-        true => shadow::without(scene),
-        false => scene,
-    };
+    let whole = arguments.scene.load(output)?;
+    let bare = || arguments.left_out.scene(whole.clone());
+    let scene = if arguments.split.is_some() { whole.clone() } else { bare() };
     let mut source = match arguments.reference {
         true => Source::Colours(reference(&scene, arguments, output)?),
-        false => Source::of_scene(&scene, arguments.leaves_out_relight(), &arguments.scene.cache, output)?,
+        false => {
+            Source::of_scene(&scene, arguments.leaves_out(PassName::Relight), &arguments.scene.cache, output)?
+        }
     };
     if arguments.health {
         source.count_health();
@@ -184,8 +171,8 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             picture.linear = renderer.average(&settings, arguments.passes)?;
             picture.display = tone::encode(&picture.linear, settings.exposure);
         }
-        if arguments.split {
-            picture.replace_left_half(&renderer.draw(&arguments.split(settings), 1)?);
+        if let Some(split) = arguments.split {
+            picture.replace_left(&arguments.other_half(device, &bare(), settings, output)?, split);
         }
         let cost = match (&arguments.stat, &picture.timing) {
             (Some(_), Some(timing)) => {
@@ -230,12 +217,12 @@ fn settings(arguments: &Arguments) -> Settings {
         exposure: 1.0,
         turn: DQuat::from_rotation_y(arguments.turn.to_radians()),
         spin: arguments.spin.to_radians(),
-        without_shadow: arguments.without == Some(PassName::Shadow) && !arguments.split,
+        without_shadow: arguments.leaves_out(PassName::Shadow),
         count_shadow: false,
         time: arguments.scene.time,
         step: arguments.step,
-        without_relight: arguments.leaves_out_relight(),
-        air: Air::with_fog(arguments.without != Some(PassName::Fog) || arguments.split),
+        without_relight: arguments.leaves_out(PassName::Relight),
+        air: Air::with_fog(!arguments.leaves_out(PassName::Fog)),
         window: None,
     }
 }
@@ -266,18 +253,28 @@ impl Arguments {
         renderer.draw_counted(settings, frames, self.pipeline_statistics)
     }
 
-    /// Whether the pass is not even there; a split picture needs it.
-    fn leaves_out_relight(&self) -> bool {
-        self.without == Some(PassName::Relight) && !self.split
+    /// Whether a pass is left out of the whole picture.
+    fn leaves_out(&self, pass: PassName) -> bool {
+        self.left_out.has(pass) && self.split.is_none()
     }
 
-    /// The settings of the left half of a split picture.
-    fn split(&self, settings: Settings) -> Settings {
-        match self.without {
-            Some(PassName::Fog) => Settings { air: Air::Clear, ..settings },
-            Some(PassName::Shadow) => Settings { without_shadow: true, ..settings },
-            _ => Settings { without_relight: true, ..settings },
-        }
+    /// The picture of which a split one shows the left half: of the scene without what the passes left out need.
+    fn other_half(
+        &self,
+        device: &device::Device<'_>,
+        bare: &Scene,
+        settings: Settings,
+        output: &Output,
+    ) -> Outcome<Picture> {
+        let without_relight = self.left_out.has(PassName::Relight);
+        let settings = Settings {
+            without_relight,
+            without_shadow: self.left_out.has(PassName::Shadow),
+            air: if self.left_out.has(PassName::Fog) { Air::Clear } else { settings.air },
+            ..settings
+        };
+        let source = Source::of_scene(bare, without_relight, &self.scene.cache, output)?;
+        Renderer::new(device, bare, &source, settings.picture_size())?.draw(&settings, 1)
     }
 }
 

@@ -49,6 +49,17 @@ pub fn gathers(scene: &Scene, instance: usize) -> bool {
     incident::is_drawn(scene) && is_drawn_on(scene, instance)
 }
 
+/// Bytes of the maps that are drawn, and of what vertices are told of the light from all around for them.
+pub fn bytes(scene: &Scene) -> u64 {
+    let drawn = scene.materials.iter().filter(|material| is_drawn(scene, material));
+    let images = drawn.filter_map(|material| scene.images.get(material.normal_texture?.image));
+    let maps: u64 = images.map(|image| 4 * u64::from(image.width) * u64::from(image.height)).sum();
+    let vertices = (0..scene.instances.len())
+        .filter(|number| gathers(scene, *number))
+        .map(|number| scene.meshes[scene.instances[number].mesh].positions.len() as u64);
+    maps + u64::from(incident::vertex_bytes(scene)) * vertices.sum::<u64>()
+}
+
 /// What the device must offer for a scene.
 pub fn requirements(scene: &Scene) -> Requirements {
     match scene.materials.iter().any(|material| is_drawn(scene, material)) {

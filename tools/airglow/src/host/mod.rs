@@ -63,6 +63,8 @@ pub mod sky;
 pub mod sphere_mesh;
 #[cfg(all(feature = "shadow", feature = "relight"))]
 pub mod spheres;
+#[cfg(feature = "relight")]
+pub mod split;
 #[cfg(all(feature = "relight", any(feature = "fog", feature = "radiance", feature = "shadow")))]
 pub mod strip;
 pub mod texture;

@@ -78,15 +78,20 @@ pub fn left_out(scene: &Scene, without_relight: bool) -> Option<LeftOut> {
         (true, true) if without_relight => ("relight, which takes its light, is left out", "relight"),
         (true, true) => return None,
     };
-    let vertices: usize =
-        scene.instances.iter().map(|instance| scene.meshes[instance.mesh].positions.len()).sum();
     Some(LeftOut {
         what: "radiance".to_owned(),
         why: why.to_owned(),
-        bytes: vertices as u64 * settings(scene).light_bytes(),
+        bytes: bytes(scene),
         time: None,
         would_return: would_return.to_owned(),
     })
+}
+
+/// Bytes of the light of all vertices of a scene.
+pub fn bytes(scene: &Scene) -> u64 {
+    let vertices: usize =
+        scene.instances.iter().map(|instance| scene.meshes[instance.mesh].positions.len()).sum();
+    vertices as u64 * settings(scene).light_bytes()
 }
 
 /// What the device must offer for a scene.

@@ -110,18 +110,6 @@ pub struct Compiled {
     pub turning: Turning,
 }
 
-impl Picture {
-    /// Puts the left half of another picture of the same size in place of this one's.
-    pub fn replace_left_half(&mut self, other: &Self) {
-        let (width, half) = (self.linear.width, self.linear.width / 2);
-        for row in 0..self.linear.height {
-            let left = row * width..row * width + half;
-            self.linear.pixels[left.clone()].copy_from_slice(&other.linear.pixels[left.clone()]);
-            self.display[left.clone()].copy_from_slice(&other.display[left]);
-        }
-    }
-}
-
 /// Frames whose times are dropped.
 pub const WARM_UP: usize = 2;
 
@@ -280,10 +268,10 @@ impl<'d> Renderer<'d> {
             }
             _ => Ok(()),
         }
-                #[cfg(feature = "normals")]
-                if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
-                    incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
-                }
+        #[cfg(feature = "normals")]
+        if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
+            incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
+        }
     }
 
     /// The median device time of the relight pass in a frame, seconds.

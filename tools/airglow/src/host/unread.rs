@@ -5,6 +5,8 @@ use airglow_scene::{Instance, Material, Scene};
 
 #[cfg(feature = "relight")]
 use super::lighting::Source;
+#[cfg(feature = "relight")]
+use super::renderer::Renderer;
 
 /// Lights that a draw takes; further ones are left out.
 pub const MAX_LIGHTS: usize = 64;
@@ -53,6 +55,15 @@ pub fn of_frame(scene: &Scene, source: &Source) -> Vec<LeftOut> {
     #[cfg(not(feature = "radiance"))]
     let (idle, _) = (None, source);
     unread(scene).into_iter().chain(idle).collect()
+}
+
+#[cfg(feature = "relight")]
+impl Renderer<'_> {
+    /// Has plans say so of what a scene does not hold because the host took it out.
+    pub fn say_left_out(&mut self, record: LeftOut) {
+        self.unread.retain(|other| other.what != record.what);
+        self.unread.push(record);
+    }
 }
 
 /// The same as [`unread`] for people.
