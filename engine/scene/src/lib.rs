@@ -27,6 +27,7 @@ mod camera;
 mod environment;
 mod error;
 pub mod exposure;
+mod false_colour;
 mod figure;
 mod files;
 pub mod geometry;
@@ -51,6 +52,7 @@ pub use animation::{Animation, Channel, ChannelValues, Interpolation, LocalTrans
 pub use camera::{Camera, Projection, Sphere};
 pub use environment::Environment;
 pub use error::SceneError;
+pub use false_colour::false_colour;
 pub use figure::Figure;
 pub use files::write_atomically;
 pub use image::{Encoding, FloatImage, Image, luminance, srgb_decode, srgb_encode};

@@ -6,8 +6,9 @@ pub const CLUSTER: usize = 64;
 pub const NOBODY: u32 = u32::MAX;
 
 /// The receivers in the order of their clusters, [`CLUSTER`] places each: halved along the longest side of their box until
-/// they fit. The same for the same positions.
-pub(crate) fn slots(positions: &[[f32; 3]]) -> Vec<u32> {
+/// they fit. The same for the same positions. Places left over hold [`NOBODY`].
+#[must_use]
+pub fn slots(positions: &[[f32; 3]]) -> Vec<u32> {
     let mut indices: Vec<u32> = (0..positions.len() as u32).collect();
     let mut slots = Vec::with_capacity(positions.len().next_multiple_of(CLUSTER));
     // Ranges still to be halved; the first half is taken up first.

@@ -49,7 +49,7 @@ mod table;
 pub use bench::Bench;
 pub use blockers::{Blockers, MAX_SPHERES};
 pub use circle::{Cap, Sphere};
-pub use clusters::{CLUSTER, NOBODY};
+pub use clusters::{CLUSTER, NOBODY, slots};
 pub use counts::Counts;
 pub use declare::Shadowed;
 pub use envelope::{Envelope, Pipelines};

@@ -6,6 +6,7 @@
 #include "common/cube.glsl"
 #include "common/depth.glsl"
 #include "common/equirect.glsl"
+#include "common/false_colour.glsl"
 #include "common/half.glsl"
 #include "common/sh_basis.glsl"
 #include "common/tone_map.glsl"
@@ -36,6 +37,8 @@ struct Result {
     float view_distance;
     vec3 decoded;
     float padding;
+    vec3 false_colour; // of x, between -0.8 and 0.8
+    float not_a_number; // the red of its colour
 };
 
 layout(std430, set = 0, binding = 1) buffer Results {
@@ -66,4 +69,6 @@ void main()
     results.rows[i].display = display;
     results.rows[i].encoded = srgb_encode(display);
     results.rows[i].decoded = srgb_decode(results.rows[i].encoded);
+    results.rows[i].false_colour = false_colour(direction.x, -0.8, 0.8);
+    results.rows[i].not_a_number = false_colour(uintBitsToFloat(0x7fc00000u)).r;
 }

@@ -6,7 +6,7 @@ use airglow_graph::{Access, BufferDesc};
 use airglow_math::sphere::{cube, equirect};
 use airglow_math::world::Depth;
 use airglow_math::{World, sequence, sh};
-use airglow_scene::{srgb_encode, tone};
+use airglow_scene::{false_colour, srgb_encode, tone};
 use airglow_tests::device::fixture;
 use airglow_tests::host_layout;
 use airglow_tests::reflect::Module;
@@ -43,6 +43,8 @@ struct Row {
     view_distance: f32,
     decoded: [f32; 3],
     padding: f32,
+    false_colour: [f32; 3],
+    not_a_number: f32,
 }
 
 /// Directions over the sphere, the axes and the diagonals; colours to 30; numbers over the range of halves.
@@ -203,6 +205,7 @@ fn halves_and_display_colours_are_those_of_the_cpu() {
     let mut display = Worst::new("tone map", 2e-6);
     let mut encoded = Worst::new("sRGB encoding", 4e-6);
     let mut decoded = Worst::new("sRGB there and back", 4e-6);
+    let mut false_colours = Worst::new("false colours", 1e-6);
     for (input, row) in inputs.iter().zip(&rows) {
         let [r, g, b, number] = input.color;
         assert_eq!(row.half_bits, u32::from(half::f16::from_f32(number).to_bits()), "half of {number:e}");
@@ -212,8 +215,13 @@ fn halves_and_display_colours_are_those_of_the_cpu() {
             encoded.add(f64::from(row.encoded[k]), f64::from(srgb_encode(row.display[k])), input);
             decoded.add(f64::from(row.decoded[k]), f64::from(row.display[k]), input);
         }
+        let truth = false_colour((input.direction[0] + 0.8) / 1.6);
+        for (found, truth) in row.false_colour.iter().zip(truth) {
+            false_colours.add(f64::from(*found), f64::from(truth), input);
+        }
+        assert_eq!(row.not_a_number, 1.0, "what is not a number is magenta");
     }
-    for worst in [display, encoded, decoded] {
+    for worst in [display, encoded, decoded, false_colours] {
         worst.check();
     }
 }
@@ -238,5 +246,7 @@ fn the_host_structs_are_the_shaders() {
         view_distance,
         decoded,
         padding,
+        false_colour,
+        not_a_number,
     }));
 }

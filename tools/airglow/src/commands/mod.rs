@@ -2,6 +2,8 @@
 
 pub mod bake;
 pub mod compare;
+#[cfg(feature = "relight")]
+pub mod debug;
 pub mod devices;
 #[cfg(feature = "relight")]
 pub mod eval;

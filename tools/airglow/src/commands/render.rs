@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use glam::DQuat;
 
 use crate::cli::Global;
+use crate::commands::debug;
 use crate::commands::scene::SceneOptions;
 use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
@@ -43,6 +44,7 @@ use crate::output::Output;
   airglow render assets/scenes/street.toml -o airs.png --compare-fog --size 640x540
   airglow render assets/scenes/lamp.toml -o lamp.png --strip 5 --size 320x360
   airglow render assets/scenes/grooves.toml -o truth.png --maps texels --samples 4 --passes 64
+  airglow render assets/scenes/walkers.toml -o clusters.png --debug shadow-blockers
   airglow render assets/scenes/spot.toml -o truth.exr --reference")]
 pub struct Arguments {
     #[command(flatten)]
@@ -123,6 +125,10 @@ pub struct Arguments {
     /// negative ones; pixels that fog cannot use.
     #[arg(long)]
     health: bool,
+    /// Draw what a pass holds or decides, in false colours with a legend, instead of the picture; an .exr gets the numbers.
+    /// `list` names all views.
+    #[arg(long, value_name = "VIEW", conflicts_with_all = ["split", "views", "passes", "reference", "stat", "trace"])]
+    debug: Option<String>,
     /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
     #[arg(long, value_name = "FILE.json")]
     trace: Option<PathBuf>,
@@ -152,6 +158,10 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
             Source::of_scene(&scene, arguments.leaves_out(PassName::Relight), &arguments.scene.cache, output)?
         }
     };
+    if let Some(view) = &arguments.debug {
+        let settings = settings(arguments);
+        return debug::run(view, &scene, &source, settings, &arguments.output, (global, output));
+    }
     if arguments.health {
         source.count_health();
     }

@@ -59,8 +59,10 @@ fn diverging(signed: f32) -> [f32; 3] {
 }
 
 /// Three significant digits in the characters that `glyphs` knows.
-fn number(value: f32) -> String {
-    if (1e-3..1e4).contains(&value) {
+pub(super) fn number(value: f32) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e4).contains(&value) {
         let digits = (2 - value.log10().floor() as i32).max(0) as usize;
         format!("{value:.digits$}")
     } else {

@@ -1,4 +1,4 @@
-//! The few characters a scale bar needs, drawn as 3 x 5 blocks: no font file is read or shipped.
+//! The characters that scale bars and their titles need, drawn as 3 x 5 blocks: no font file is read or shipped.
 
 use airglow_scene::FloatImage;
 
@@ -23,6 +23,38 @@ fn rows(character: char) -> Option<[u8; 5]> {
         '-' => [0b000, 0b000, 0b111, 0b000, 0b000],
         '.' => [0b000, 0b000, 0b000, 0b000, 0b010],
         'e' => [0b000, 0b111, 0b101, 0b110, 0b111],
+        'a' => [0b010, 0b101, 0b111, 0b101, 0b101],
+        'b' => [0b110, 0b101, 0b110, 0b101, 0b110],
+        'c' => [0b011, 0b100, 0b100, 0b100, 0b011],
+        'd' => [0b110, 0b101, 0b101, 0b101, 0b110],
+        'E' => [0b111, 0b100, 0b110, 0b100, 0b111],
+        'f' => [0b111, 0b100, 0b110, 0b100, 0b100],
+        'g' => [0b011, 0b100, 0b101, 0b101, 0b011],
+        'h' => [0b101, 0b101, 0b111, 0b101, 0b101],
+        'i' => [0b111, 0b010, 0b010, 0b010, 0b111],
+        'j' => [0b001, 0b001, 0b001, 0b101, 0b010],
+        'k' => [0b101, 0b110, 0b100, 0b110, 0b101],
+        'l' => [0b100, 0b100, 0b100, 0b100, 0b111],
+        'm' => [0b101, 0b111, 0b111, 0b101, 0b101],
+        'n' => [0b110, 0b101, 0b101, 0b101, 0b101],
+        'o' => [0b010, 0b101, 0b101, 0b101, 0b010],
+        'p' => [0b110, 0b101, 0b110, 0b100, 0b100],
+        'q' => [0b010, 0b101, 0b101, 0b110, 0b011],
+        'r' => [0b110, 0b101, 0b110, 0b110, 0b101],
+        's' => [0b011, 0b100, 0b010, 0b001, 0b110],
+        't' => [0b111, 0b010, 0b010, 0b010, 0b010],
+        'u' => [0b101, 0b101, 0b101, 0b101, 0b111],
+        'v' => [0b101, 0b101, 0b101, 0b101, 0b010],
+        'w' => [0b101, 0b101, 0b111, 0b111, 0b101],
+        'x' => [0b101, 0b101, 0b010, 0b101, 0b101],
+        'y' => [0b101, 0b101, 0b010, 0b010, 0b010],
+        'z' => [0b111, 0b001, 0b010, 0b100, 0b111],
+        '\'' => [0b010, 0b010, 0b000, 0b000, 0b000],
+        ':' => [0b000, 0b010, 0b000, 0b010, 0b000],
+        '/' => [0b001, 0b001, 0b010, 0b100, 0b100],
+        ',' => [0b000, 0b000, 0b000, 0b010, 0b100],
+        '(' => [0b001, 0b010, 0b010, 0b010, 0b001],
+        ')' => [0b100, 0b010, 0b010, 0b010, 0b100],
         _ => return None,
     })
 }
@@ -64,8 +96,8 @@ mod tests {
     use crate::compare::picture;
 
     #[test]
-    fn all_characters_of_a_number_are_known_and_distinct() {
-        let characters = "0123456789+-.e";
+    fn all_characters_are_known_and_distinct() {
+        let characters = "0123456789+-.abcdeEfghijklmnopqrstuvwxyz:/,()'";
         let mut shapes: Vec<_> = characters.chars().map(|c| rows(c).unwrap()).collect();
         shapes.sort_unstable();
         shapes.dedup();

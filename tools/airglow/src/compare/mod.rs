@@ -3,6 +3,7 @@
 pub mod difference;
 pub mod flip;
 pub mod glyphs;
+pub mod legend;
 pub mod picture;
 pub mod statistics;
 

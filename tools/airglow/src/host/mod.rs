@@ -13,6 +13,8 @@ pub mod average;
 pub mod ball;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod complete;
+#[cfg(feature = "relight")]
+pub mod debug;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
 pub mod device;
@@ -32,6 +34,8 @@ pub mod frame;
 pub mod holes;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod incident;
+#[cfg(feature = "relight")]
+pub mod kept;
 #[cfg(feature = "relight")]
 pub mod lighting;
 #[cfg(feature = "relight")]

@@ -184,6 +184,11 @@ impl NearLight {
         (self.triangles, self.spheres) = emitters::shapes(&self.emitters, part);
     }
 
+    /// Its samples and vertices.
+    pub fn receiver(&self) -> &Receiver {
+        &self.receiver
+    }
+
     /// Adds the pass.
     pub fn add(
         &self,

@@ -264,13 +264,13 @@ impl<'d> Renderer<'d> {
         }
         match (&turning.rotations, &self.environment, &self.lighting) {
             (Some(rotations), Some(map), Lighting::Relight(lit)) => {
+                #[cfg(feature = "normals")]
+                if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
+                    incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
+                }
                 rotations.set(turn * map.rotation, &lit.orientations()).map_err(Failure::work)
             }
             _ => Ok(()),
-        }
-        #[cfg(feature = "normals")]
-        if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
-            incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
         }
     }
 

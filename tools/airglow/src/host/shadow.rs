@@ -1,15 +1,14 @@
 //! The shadow pass with a scene: its spheres, the receivers of every instance, and what it counts.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use airglow::shadow::spheres::{Hierarchy, Node};
 use airglow::shadow::{self, Blockers, Counts, Receivers, Shadow, Sphere};
-use airglow_gpu::{Buffer, Imports, Readback, Record, Requirements};
-use airglow_graph::{self as graph, Access, Graph, Handle, LeftOut, PassKind};
+use airglow_gpu::{Buffer, Imports, Record, Requirements};
+use airglow_graph::{self as graph, Access, Graph, Handle, LeftOut};
 use airglow_scene::{Mesh, Scene};
 use glam::{DMat4, DVec3, Mat4};
 
 use super::device::Device;
+use super::kept::Kept;
 use super::skin::{self, Posed};
 use super::spheres::InstanceSpheres;
 use super::transfer::SceneTransfer;
@@ -55,7 +54,7 @@ pub struct Shadowed {
 }
 
 /// What is read back of an instance's clusters.
-pub type CountsSlot = Arc<Mutex<Option<Readback>>>;
+pub type CountsSlot = Kept;
 
 /// Whether a scene has something that moves or is stated to cast shadows.
 fn blocks(scene: &Scene) -> bool {
@@ -159,7 +158,7 @@ impl SceneShadow {
             let added = self.pass.add(graph, receivers, blockers, positions, Some(normals));
             shadowed.visibility.push(added.visibility);
             if let (true, Some(records)) = (count, added.records) {
-                shadowed.counts.push(read_back(graph, records));
+                shadowed.counts.push(Kept::add(graph, "shadow counts", records));
             }
         }
         shadowed
@@ -222,16 +221,9 @@ impl Instance {
         number: usize,
         world_from_receiver: Mat4,
     ) -> Outcome<Self> {
-        let instance = &scene.instances[number];
-        let mesh = &scene.meshes[instance.mesh];
-        let receiver_from_world = world_from_receiver.inverse();
-        let receiver_from_object = receiver_from_world * instance.transform;
-        let (positions, normals) = match world_from_receiver == instance.transform {
-            true => (mesh.positions.clone(), mesh.normals.clone()),
-            false => still(mesh).posed(&[receiver_from_object]),
-        };
-        let receivers =
-            pass.receivers(device.context(), &instance.name, &positions).map_err(Failure::work)?;
+        let name = &scene.instances[number].name;
+        let (positions, normals) = still_receivers(scene, number, world_from_receiver);
+        let receivers = pass.receivers(device.context(), name, &positions).map_err(Failure::work)?;
         let read = Access::ComputeStorageRead;
         let vertices = (!scene.moves(number)).then(|| {
             device.run(|recorder| {
@@ -242,8 +234,22 @@ impl Instance {
             })
         });
         let vertices = vertices.transpose().map_err(Failure::work)?;
-        let receiver_from_world = receiver_from_world.as_dmat4();
+        let receiver_from_world = world_from_receiver.inverse().as_dmat4();
         Ok(Self { receivers, blockers: Blockers::default(), receiver_from_world, vertices })
+    }
+}
+
+/// Positions and normals of an instance, were it to stand still, in the space that its transfer is in.
+pub fn still_receivers(
+    scene: &Scene,
+    number: usize,
+    world_from_receiver: Mat4,
+) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+    let instance = &scene.instances[number];
+    let mesh = &scene.meshes[instance.mesh];
+    match world_from_receiver == instance.transform {
+        true => (mesh.positions.clone(), mesh.normals.clone()),
+        false => still(mesh).posed(&[world_from_receiver.inverse() * instance.transform]),
     }
 }
 
@@ -267,26 +273,11 @@ fn import(
     [import("receivers", &buffers[0]), import("normals of receivers", &buffers[1])]
 }
 
-fn read_back(graph: &mut Graph<Record>, records: Handle<graph::Buffer>) -> CountsSlot {
-    let slot = CountsSlot::default();
-    let filled = Arc::clone(&slot);
-    let mut pass = graph.pass("shadow counts", PassKind::Transfer);
-    pass.read(&records, Access::TransferSource).side_effect();
-    pass.record(Box::new(move |recorder, resources| {
-        let copy = recorder.read_back_buffer(resources.buffer(&records)?)?;
-        *filled.lock().unwrap_or_else(PoisonError::into_inner) = Some(copy);
-        Ok(())
-    }));
-    slot
-}
-
 /// The sum of what was read back, once the frame is done.
 pub fn counts(slots: &[CountsSlot]) -> Outcome<Counts> {
     let mut records: Vec<[u32; 2]> = Vec::new();
     for slot in slots {
-        if let Some(copy) = slot.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            records.extend(copy.read::<[u32; 2]>().map_err(Failure::work)?);
-        }
+        records.extend(slot.take::<[u32; 2]>()?);
     }
     Ok(Counts::of(&records))
 }
