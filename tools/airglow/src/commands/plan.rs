@@ -1,5 +1,7 @@
 //! `airglow plan`: what a frame does, and what it does without.
 
+use std::collections::BTreeMap;
+
 use airglow_scene::Scene;
 use clap::{Args, ValueEnum};
 use glam::DQuat;
@@ -11,6 +13,7 @@ use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
 use crate::host::device::{self, Device};
 use crate::host::lighting::Source;
+use crate::host::permutations;
 use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
@@ -106,7 +109,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
                 plan.text() + &measured + &table::text(&presets)
             }
             Form::Mermaid => plan.mermaid(),
-            Form::Json => with_passes(plan.json().map_err(Failure::work)?, passes, &presets)?,
+            Form::Json => {
+                let steps: Vec<&str> = plan.steps().iter().map(|step| step.name.as_str()).collect();
+                let permutations = permutations::of_frame(&scene, &steps);
+                with_more(plan.json().map_err(Failure::work)?, passes, &presets, permutations)?
+            }
         })
     })?;
     print(&text)
@@ -137,12 +144,16 @@ fn measured(passes: &[PassStat]) -> String {
     format!("measured (median, 5th to 95th percentile; counts are the same on every machine)\n{lines}")
 }
 
-/// The plan as JSON, with the passes measured as `measured`, and what presets took as `presets`.
-fn with_passes(plan: String, passes: Option<Vec<PassStat>>, presets: &[&Row]) -> Outcome<String> {
-    if passes.is_none() && presets.is_empty() {
-        return Ok(plan);
-    }
+/// The plan as JSON, with what decides its shaders as `permutations`, the passes measured as `measured`, and what presets
+/// took as `presets`.
+fn with_more(
+    plan: String,
+    passes: Option<Vec<PassStat>>,
+    presets: &[&Row],
+    permutations: BTreeMap<&str, String>,
+) -> Outcome<String> {
     let mut plan: serde_json::Value = serde_json::from_str(&plan).map_err(Failure::work)?;
+    plan["permutations"] = serde_json::to_value(permutations).map_err(Failure::work)?;
     if let Some(passes) = passes {
         plan["measured"] = serde_json::to_value(passes).map_err(Failure::work)?;
     }

@@ -45,7 +45,7 @@ pub fn requirements(scene: &Scene) -> Requirements {
 }
 
 /// The settings of the pass for a scene.
-fn settings(scene: &Scene, format: vk::Format) -> fog::Settings {
+pub fn settings(scene: &Scene, format: vk::Format) -> fog::Settings {
     let asked = scene.presets.of("fog").map_or_else(fog::Settings::default, fog::Settings::from);
     fog::Settings { format, environment: scene.environment.is_some(), ..asked }
 }

@@ -51,6 +51,8 @@ pub mod near_tree;
 #[cfg(feature = "relight")]
 pub mod over;
 #[cfg(feature = "relight")]
+pub mod permutations;
+#[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;
 #[cfg(feature = "relight")]

@@ -107,7 +107,8 @@ pub fn measured_requirements() -> Requirements {
     Radiance::requirements(&PassSettings { order: *ORDERS.end() as usize, ..PassSettings::default() })
 }
 
-fn settings(scene: &Scene) -> PassSettings {
+/// The settings of the pass for a scene.
+pub fn settings(scene: &Scene) -> PassSettings {
     let unasked = || {
         let refinement = Settings { bound: BOUND, ..Settings::default() };
         PassSettings { refinement, ..PassSettings::default() }

@@ -106,15 +106,19 @@ fn record(why: &str, would_return: &str, bytes: u64) -> LeftOut {
     LeftOut { what, why, bytes, time: None, would_return }
 }
 
+/// The settings of the pass for a scene.
+pub fn settings(scene: &Scene) -> shadow::Settings {
+    let asked = scene.presets.of("shadow").map_or_else(shadow::Settings::default, shadow::Settings::from);
+    shadow::Settings { order: scene.quality.order as usize, normals: true, ..asked }
+}
+
 impl SceneShadow {
     /// The pass for a scene, where it has something to do.
     pub fn new(device: &Device<'_>, scene: &Scene, transfer: &SceneTransfer) -> Outcome<Option<Self>> {
         if !is_drawn(scene) {
             return Ok(None);
         }
-        let order = scene.quality.order as usize;
-        let asked = scene.presets.of("shadow").map_or_else(shadow::Settings::default, shadow::Settings::from);
-        let settings = shadow::Settings { order, normals: true, ..asked };
+        let settings = settings(scene);
         let pass = Shadow::new(device.context(), settings).map_err(Failure::work)?;
         let mut instances = Vec::with_capacity(scene.instances.len());
         for (number, lit) in transfer.instances.iter().enumerate() {
@@ -122,7 +126,7 @@ impl SceneShadow {
             let frame = if lit.in_world { Mat4::IDENTITY } else { scene.instances[number].transform };
             instances.push(Instance::new(device, &pass, scene, number, frame)?);
         }
-        let spheres = Blocking::new(scene, transfer.spheres.clone(), order)?;
+        let spheres = Blocking::new(scene, transfer.spheres.clone(), settings.order)?;
         let shadow = Self { pass, instances, spheres, moving: skin::moving(scene) };
         shadow.set_time(0.0)?;
         Ok(Some(shadow))

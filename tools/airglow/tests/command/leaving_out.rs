@@ -25,21 +25,34 @@ const ENVIRONMENT: &str = "[environment]\nfile = 'ENV/courtyard_512.exr'\n";
 const FAR: &str = "[environment]\nfile = 'ENV/courtyard_512.exr'\ndistance = 40\n";
 const MEDIUM: &str = "[medium]\nextinction = 0.05\nalbedo = 0.9\n";
 const EMITTER: &str = "[[emitter]]\ncenter = [0, 1, -1]\nsize = [0.2, 0.2, 0.2]\nradiance = [9, 5, 2]\n";
+/// Much farther than the mesh is wide: one sample is enough.
+const DISTANT: &str =
+    "[[emitter]]\ncenter = [0, 40, -90]\nsize = [0.2, 0.2, 0.2]\nradiance = [9000, 5000, 2000]\n";
 /// It is drawn, black, and lights nothing.
 const DARK: &str = "[[emitter]]\ncenter = [0, 1, -1]\nsize = [0.2, 0.2, 0.2]\nradiance = [0, 0, 0]\n";
+/// A file without a mesh.
+const LAMP: &str = "[[gltf]]\nfile = 'lamp.gltf'\n";
+const LAMP_FILE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"translation":[0,3,0],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"extensionsUsed":["KHR_lights_punctual"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":100}]}}}"#;
 const BLOCKER: &str = "[[blocker]]\ncenter = [0.3, 1, 0.2]\nradius = 0.4\n";
 
 /// Combinations: the mesh, which with `grooves` has a normal map, a sun and a lamp, and what else there is.
-const SCENES: [(&str, &str, Parts); 13] = [
+const SCENES: [(&str, &str, Parts); 17] = [
     ("nothing but a mesh", "ground", &[]),
     ("an environment", "ground", &[ENVIRONMENT]),
     ("a medium without light", "ground", &[MEDIUM]),
     ("an environment behind a medium", "ground", &[FAR, MEDIUM]),
     ("near emitters", "ground", &[EMITTER]),
     ("near emitters and an environment", "ground", &[EMITTER, ENVIRONMENT]),
+    ("a far emitter and an environment", "ground", &[DISTANT, ENVIRONMENT]),
     ("an emitter that is dark, and an environment", "ground", &[DARK, ENVIRONMENT]),
     ("something that moves, without light", "ground", &[BLOCKER]),
     ("something that moves under an environment", "ground", &[BLOCKER, ENVIRONMENT]),
+    ("one light on a surface that only scatters", "ground", &[LAMP]),
+    ("one light in a medium", "ground", &[LAMP, MEDIUM]),
+    ("three lamps, no normal map", "lights_room", &[]),
     ("lamps on a normal map", "grooves", &[]),
     ("lamps on a normal map under an environment", "grooves", &[ENVIRONMENT]),
     ("lamps on a normal map in a medium", "grooves", &[MEDIUM]),
@@ -57,6 +70,7 @@ fn write(folder: &Path, mesh: &str, parts: &[&str]) -> String {
     let assets = root().join("assets").display().to_string();
     let quality = "[quality]\norder = 3\nrays = 16\nshadow = 'unshadowed'\n[exposure]\nscale = 1\n";
     let text = format!("[[gltf]]\nfile = '{assets}/mesh/{mesh}.glb'\n{}{quality}", parts.concat());
+    std::fs::write(folder.join("lamp.gltf"), LAMP_FILE).unwrap();
     let file = folder.join("scene.toml");
     std::fs::write(&file, text.replace("ENV", &format!("{assets}/env"))).unwrap();
     file.display().to_string()
@@ -96,6 +110,12 @@ fn within(plan: &Value) -> String {
     )
 }
 
+/// What decides the shaders of each pass.
+fn permutations(plan: &Value) -> String {
+    let all = plan["permutations"].as_object().unwrap().iter();
+    all.map(|(room, settings)| format!("  shaders of {room}: {}\n", settings.as_str().unwrap())).collect()
+}
+
 /// What is not there, why, what that saves and what would bring it back.
 fn left_out(plan: &Value) -> String {
     let line = |out: &Value| {
@@ -110,7 +130,7 @@ fn every_combination_holds_what_it_needs_and_says_what_it_does_not() {
     let folder = tempfile::tempdir().unwrap();
     let section = |(title, mesh, parts): &(&str, &str, &[&str])| {
         let plan = plan(folder.path(), mesh, parts);
-        format!("{title}\n{}{}\n", within(&plan), left_out(&plan))
+        format!("{title}\n{}{}{}\n", within(&plan), permutations(&plan), left_out(&plan))
     };
     let text: String = SCENES.iter().map(section).collect();
     assert_text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/leaving_out.txt"), &text);
