@@ -51,11 +51,11 @@ impl Arcade {
         self.from.distance(self.to) / self.bays as f32
     }
 
-    /// The wall over the arches: two faces, the undersides of the arches, and the top.
-    pub fn wall(&self) -> Mesh {
+    /// The wall over the arches: the face on one side, 1 or -1; and the other one, the undersides of the arches and the top.
+    pub fn wall(&self, front: f32) -> [Mesh; 2] {
         let (along, bay) = (self.along(), self.bay());
         let across = along.cross(Vec3::Y);
-        let mut mesh = Mesh::default();
+        let [mut face, mut mesh] = [Mesh::default(), Mesh::default()];
         let radius = 0.5 * bay - PIER;
         for number in 0..self.bays {
             let middle = self.from + (number as f32 + 0.5) * bay * along;
@@ -73,6 +73,7 @@ impl Arcade {
                 for side in [1.0, -1.0] {
                     let corners =
                         [at(a, low, side), at(b, high, side), at(b, HEIGHT, side), at(a, HEIGHT, side)];
+                    let mesh = if side == front { &mut face } else { &mut mesh };
                     mesh.push_quad(corners, [side * across; 4]);
                 }
                 let inward = |t: f32, y: f32| match y > SPRINGING || t.abs() <= radius {
@@ -90,7 +91,7 @@ impl Arcade {
         let [from, to] = [self.from, self.to].map(|p| p + HEIGHT * Vec3::Y);
         let side = HALF * across;
         mesh.push_quad([from - side, to - side, to + side, from + side], [Vec3::Y; 4]);
-        mesh
+        [face, mesh]
     }
 
     /// The columns, each on a square block and below another, a step that they all stand on, and a cornice.

@@ -16,8 +16,8 @@ use crate::stone;
 
 /// Low and high corners of the court's floor, metres.
 const FLOOR: [Vec2; 2] = [Vec2::new(-8.0, -36.0), Vec2::new(8.0, 7.0)];
-/// The carpet: its left and right edge and its two ends, and the width of its border.
-const CARPET: [Vec2; 2] = [Vec2::new(0.35, -33.0), Vec2::new(1.95, 6.0)];
+/// Left and right edge of the carpet, and the width of its border.
+const CARPET: [f32; 2] = [0.35, 1.95];
 const BORDER: f32 = 0.13;
 /// Metres that it lies over the floor.
 const LIFT: f32 = 0.012;
@@ -76,7 +76,10 @@ pub fn make(assets: &Path) -> Result<(), Error> {
         }
         building.push(primitive);
     };
-    add(ground(FLOOR, 0.0), Material::Paving, Some(PAVING_TILE));
+    let [low, high] = FLOOR;
+    let mut paving = ground([low, Vec2::new(CARPET[0], high.y)], 0.0);
+    paving.append(&ground([Vec2::new(CARPET[1], low.y), high], 0.0));
+    add(paving, Material::Paving, Some(PAVING_TILE));
     let [walls, dressed] = masonry();
     add(walls, Material::Masonry, Some(MASONRY_TILE));
     add(dressed, Material::Stone, None);
@@ -130,10 +133,10 @@ fn materials() -> Vec<Value> {
     globe["extensions"] = json!({"KHR_materials_emissive_strength": {"emissiveStrength": strongest}});
     vec![
         mapped(glb::material("paving", [0.55, 0.52, 0.50], 0.0, 0.34), 0, Some(3)),
-        mapped(glb::material("masonry", [0.62, 0.56, 0.48], 0.0, 0.8), 1, Some(4)),
+        mapped(glb::material("masonry", [0.62, 0.56, 0.48], 0.0, 0.95), 1, Some(4)),
         glb::material("dressed stone", [0.58, 0.53, 0.46], 0.0, 0.85),
-        mapped(glb::material("carpet", [0.36, 0.025, 0.03], 0.0, 0.75), 2, None),
-        mapped(glb::material("border", [0.62, 0.42, 0.14], 0.0, 0.6), 2, None),
+        mapped(glb::material("carpet", [0.36, 0.025, 0.03], 0.0, 0.95), 2, None),
+        mapped(glb::material("border", [0.62, 0.42, 0.14], 0.0, 0.95), 2, None),
         glb::material("marble", [0.80, 0.78, 0.74], 0.0, 0.9),
         glb::material("iron", [0.04, 0.04, 0.045], 0.0, 0.5),
         globe,
@@ -204,18 +207,21 @@ fn masonry() -> [Mesh; 2] {
             to: Vec3::new(side * ARCADE, 0.0, GATE),
             bays,
         };
-        walls.append(&row.wall().refined(wall_edge));
+        let [face, rest] = row.wall(-side);
+        walls.append(&face.refined(wall_edge));
+        dressed.append(&rest.refined(wall_edge));
         dressed.append(&row.columns());
-        let outer = |y: f32, thick: f32| {
-            let (a, b) = (side * WALL, side * (WALL + thick));
-            (Vec3::new(a.min(b), 0.0, GATE - 1.0), Vec3::new(a.max(b), y, NEAR + 2.0))
-        };
-        let (low, high) = outer(5.2, 0.4);
-        walls.append(&Mesh::block(low, high).refined(|p| 1.5 * wall_edge(p)));
+        let at = |y: f32, z: f32| Vec3::new(side * WALL, y, z);
+        let (near, far) = (NEAR + 2.0, GATE - 1.0);
+        let mut outer = Mesh::default();
+        outer.push_quad([at(0.0, near), at(0.0, far), at(5.3, far), at(5.3, near)], [-side * Vec3::X; 4]);
+        walls.append(&outer.refined(|p| 1.5 * wall_edge(p)));
         dressed.append(&roof(side).refined(|p| 2.0 * wall_edge(p)));
     }
     let gate = Arcade { from: Vec3::new(-ARCADE, 0.0, GATE), to: Vec3::new(ARCADE, 0.0, GATE), bays: 3 };
-    walls.append(&gate.wall().refined(wall_edge));
+    let [face, rest] = gate.wall(1.0);
+    walls.append(&face.refined(wall_edge));
+    dressed.append(&rest.refined(wall_edge));
     dressed.append(&gate.columns());
     [walls, dressed]
 }
@@ -241,11 +247,12 @@ fn roof(side: f32) -> Mesh {
 
 /// The cloth and its border.
 fn carpet() -> [Mesh; 2] {
-    let [low, high] = CARPET;
-    let inner = [low.x + BORDER, high.x - BORDER];
-    let strip = |left: f32, right: f32| ground([Vec2::new(left, low.y), Vec2::new(right, high.y)], LIFT);
-    let mut border = strip(low.x, inner[0]);
-    border.append(&strip(inner[1], high.x));
+    let [left, right] = CARPET;
+    let inner = [left + BORDER, right - BORDER];
+    let strip =
+        |left: f32, right: f32| ground([Vec2::new(left, FLOOR[0].y), Vec2::new(right, FLOOR[1].y)], LIFT);
+    let mut border = strip(left, inner[0]);
+    border.append(&strip(inner[1], right));
     [strip(inner[0], inner[1]), border]
 }
 

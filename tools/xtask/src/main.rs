@@ -12,6 +12,7 @@ mod error;
 mod files;
 mod glb;
 mod header;
+mod latitudes;
 mod manifest;
 mod mesh;
 mod portability;

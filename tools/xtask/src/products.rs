@@ -13,9 +13,13 @@ use airglow_math::sh::product::TripleProduct;
 
 use crate::error::Error;
 use crate::files;
+use crate::latitudes;
 
 /// The orders of the shadow room.
 const ORDERS: [usize; 4] = [3, 4, 5, 6];
+
+/// The order whose product is taken over latitudes too.
+const BY_LATITUDES: usize = 6;
 
 /// Writes the files; nothing where the room is gone.
 ///
@@ -32,7 +36,9 @@ pub fn make(glsl: &Path) -> Result<(), Error> {
         let tensor = TripleProduct::new(order).map_err(refuse)?;
         files::write_whole(&path, source(&tensor).as_bytes())?;
     }
-    Ok(())
+    let path = folder.join(format!("latitudes{BY_LATITUDES}.glsl"));
+    let refuse = |error: MathError| Error::Manifest { path: path.clone(), message: error.to_string() };
+    files::write_whole(&path, latitudes::source(BY_LATITUDES).map_err(refuse)?.as_bytes())
 }
 
 /// The two functions of one order.
@@ -106,6 +112,11 @@ mod tests {
                 committed == source(&TripleProduct::new(order).unwrap()),
                 "order {order}: run `cargo run -p xtask -- products`"
             );
+        }
+        let path = folder.join(format!("latitudes{BY_LATITUDES}.glsl"));
+        if folder.is_dir() {
+            let made = latitudes::source(BY_LATITUDES).unwrap();
+            assert!(std::fs::read_to_string(path).unwrap() == made, "run `cargo run -p xtask -- products`");
         }
     }
 
