@@ -96,6 +96,7 @@ features! {
     SamplerAnisotropy = core.sampler_anisotropy, "samplerAnisotropy", "anisotropic filtering";
     MultiDrawIndirect = core.multi_draw_indirect, "multiDrawIndirect", "more than one draw per indirect call";
     DrawIndirectFirstInstance = core.draw_indirect_first_instance, "drawIndirectFirstInstance", "instance offsets in indirect draws";
+    ShaderClipDistance = core.shader_clip_distance, "shaderClipDistance", "vertex shaders place planes that clip";
     DepthClamp = core.depth_clamp, "depthClamp", "depth is clamped instead of clipped";
     PipelineStatisticsQuery = core.pipeline_statistics_query, "pipelineStatisticsQuery", "exact invocation counts";
     ShaderInt16 = core.shader_int16, "shaderInt16", "16-bit integers";

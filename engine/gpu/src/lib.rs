@@ -59,7 +59,7 @@ pub use pipeline::{
 };
 pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
-pub use requirements::Requirements;
+pub use requirements::{FeatureNeed, Requirements};
 pub use resources::{Imports, Resources};
 pub use tally::{Counted, Look, Records, TALLY_BINDINGS, Tally};
 pub use timing::{FrameTimes, PassStatistics, PassTime, Timing, TimingSummary};

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
 // Incident radiance of triangles at samples: a workgroup a sample, an invocation a block of rays of a tile of a face of a cube
 // map, RAYS x RAYS rays a texel. Sun, "Effective Sampling and Reconstruction of Incident Radiance for Spherical
 // Harmonic Lighting" (2005), section 3.3.4, with exact solid angles of texels. Of triangles that hide one another the
@@ -9,6 +10,7 @@
 // ORDER      3-6
 // GRADIENTS  1: derivatives by the sample's position, too
 // RAYS       1, 2 or 4
+// ATLAS      1: what rays see is read from an atlas that was drawn
 
 #include "common/cube.glsl"
 #include "radiance/face.glsl"
@@ -30,6 +32,10 @@ layout(std430, set = 0, binding = 5) readonly buffer Surfaces { Surface surfaces
 layout(std430, set = 0, binding = 7) buffer Gradients { vec4 gradients[]; };
 #endif
 
+#ifdef ATLAS
+layout(set = 0, binding = 8) uniform texture2D atlas;
+#endif
+
 layout(push_constant) uniform Settings {
     uint triangle_count;
     uint size; // texels along a side of a face
@@ -39,6 +45,7 @@ layout(push_constant) uniform Settings {
     float red; // extinction of the medium between, 1/m
     float green;
     float blue;
+    uint columns; // of the atlas, faces in a row
 } settings;
 
 #define SAMPLE_LIGHT(i) lights[(batch.first + gl_WorkGroupID.x) * uint(LIGHT_STRIDE) + (i)]
@@ -54,7 +61,11 @@ layout(push_constant) uniform Settings {
 #endif
 #define TEXELS (BLOCK / RAYS) // along a side of a block
 
+#ifdef ATLAS
+#include "radiance/atlas.glsl"
+#else
 #include "radiance/visible.glsl"
+#endif
 
 // What a ray sees of a triangle that shows a picture; `depth` is the distance along the face's normal.
 vec3 shown_radiance(Tile tile, vec3 point, uint index, vec2 at, float depth)

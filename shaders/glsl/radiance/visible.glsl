@@ -9,34 +9,14 @@
 
 #include "radiance/exact.glsl"
 #include "radiance/face.glsl"
+#include "radiance/tile.glsl"
 
-#define TILE (8 * BLOCK) // rays along a side
 // The most rays that a triangle is cast through by one invocation. Of 0, 4, 8 and 16 it takes the least time.
 #define FEW 16
 
-// Of each ray: bits of the nearness, length of the ray over distance, and the name of the triangle; 0 for none.
-shared uint tile_nearness[TILE * TILE];
-shared uint tile_name[TILE * TILE];
 // Triangles that all invocations try, of LANES gathered at a time.
 shared Seen tile_seen[LANES];
 shared uint tile_mask[2];
-shared uint tile_met;
-
-// A tile of a face: where it begins, and how wide its rays are.
-struct Tile {
-    uint face;
-    vec2 low;
-    float side;
-    ivec2 first; // ray of the face
-    int rays; // along a side of the face
-};
-
-// Where a ray of the tile passes the face.
-vec2 tile_at(Tile tile, ivec2 ray)
-{
-    precise vec2 at = tile.low + tile.side * (vec2(ray) + 0.5);
-    return at;
-}
 
 // Whether a ray that passes an edge within rounding hits: as the numbers of the buffers have it, not what is left of them.
 bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)

@@ -72,6 +72,8 @@ pub struct TexelConstants {
     pub green: f32,
     /// The same.
     pub blue: f32,
+    /// Faces in a row of the atlas, where there is one.
+    pub columns: u32,
 }
 
 /// Bindings of `analytic.comp`: batch, points, triangles, lights, spheres, and gradients where there are any.

@@ -1,5 +1,6 @@
 //! The room on a device: light sampled by kernels, and where they leave it.
 
+mod atlas;
 pub mod bench;
 mod global;
 pub mod glow;
@@ -13,6 +14,7 @@ mod texels;
 pub mod tree;
 pub mod vertices;
 
+pub use atlas::Atlas;
 pub use global::{GLOBAL_BINDINGS, Global, GlobalWork};
 pub use glow::DeviceGlow;
 pub use keep::{Keep, OldSamples};

@@ -171,6 +171,7 @@ impl Texels {
             red: extinction[0],
             green: extinction[1],
             blue: extinction[2],
+            columns: 0,
         })?;
         recorder.dispatch_indirect(buffers.batch.clone())
     }
@@ -189,7 +190,7 @@ impl Texels {
 }
 
 /// Exact solid angles of a face's texels, row by row.
-fn solid_angles(context: &Context, size: usize) -> Result<Buffer, RadianceError> {
+pub(super) fn solid_angles(context: &Context, size: usize) -> Result<Buffer, RadianceError> {
     let exact = SolidAngles::new(size)?;
     let texel = |i: usize| Ok(exact.get(i % size, i / size)? as f32);
     let values: Vec<f32> = (0..size * size).map(texel).collect::<Result<_, RadianceError>>()?;

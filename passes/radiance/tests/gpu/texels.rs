@@ -89,7 +89,8 @@ fn host_structs_are_as_the_compiler_laid_them_out() {
             shown_count,
             red,
             green,
-            blue
+            blue,
+            columns
         });
         module.push_constants.as_ref().unwrap().assert_matches(&constants);
         let block = |binding: usize| module.bindings[binding].block.as_ref().unwrap();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use airglow::math::sh::rotation::Rotation;
 use airglow::math::sphere::equirect::Projector;
-use airglow::radiance::gpu::RefineState;
+use airglow::radiance::gpu::{Atlas, RefineState};
 use airglow::radiance::gpu::bench::Bench;
 use airglow::radiance::{
     Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Sphere, Triangle,
@@ -104,7 +104,8 @@ pub fn requirements(scene: &Scene) -> Requirements {
 
 /// What the device must offer to measure the pass at any of its orders.
 pub fn measured_requirements() -> Requirements {
-    Radiance::requirements(&PassSettings { order: *ORDERS.end() as usize, ..PassSettings::default() })
+    let settings = PassSettings { order: *ORDERS.end() as usize, ..PassSettings::default() };
+    Radiance::requirements(&settings).and(&Atlas::requirements())
 }
 
 /// The settings of the pass for a scene.

@@ -4,7 +4,7 @@ use airglow::radiance::{Oracle, PassSettings, Settings, Triangle};
 
 use super::Measurement;
 use super::race::Setting;
-use super::workload::{CONVERGED, FULL_ORDER};
+use super::workload::{CONVERGED, FINE, FULL_ORDER};
 use crate::failure::{Failure, Outcome};
 use crate::host::near::BOUND;
 use crate::report::interleave;
@@ -28,11 +28,14 @@ fn refined(change: impl FnOnce(&mut Settings)) -> PassSettings {
 impl Measurement<'_> {
     /// The bound on the oracle's estimate.
     pub fn bound(&self) -> Outcome<Curve> {
-        let settings =
-            BOUNDS.map(|bound| Setting::new(bound.to_string(), refined(|r| r.bound = bound)).of_same_rays());
+        let settings = BOUNDS.map(|bound| {
+            let pass = PassSettings { face: FINE.0, rays: FINE.1, ..refined(|r| r.bound = bound) };
+            Setting::new(bound.to_string(), pass).of_same_rays()
+        });
         let question = format!(
-            "Which bound on the error of a node's vertices, in units of colour? The error falls with it. The host of \
-             this command asks for {BOUND}."
+            "Which bound on the error of a node's vertices, in units of colour? The error falls with it. Faces of {} \
+             texels with {} x {} rays, so that rays do not decide. The host of this command asks for {BOUND}.",
+            FINE.0, FINE.1, FINE.1
         );
         self.knob("bound", &question, settings.into(), &default_settings().refinement.bound.to_string())
     }
@@ -41,8 +44,15 @@ impl Measurement<'_> {
     pub fn limit(&self) -> Outcome<Curve> {
         let limits = [16, 64, 256, 1024, 4096];
         let setting = |limit: usize| {
-            Setting::new(limit.to_string(), refined(|r| (r.bound, r.limit) = (BOUNDS[5], limit)))
-                .of_same_rays()
+            Setting::new(
+                limit.to_string(),
+                PassSettings {
+                    face: FINE.0,
+                    rays: FINE.1,
+                    ..refined(|r| (r.bound, r.limit) = (BOUNDS[5], limit))
+                },
+            )
+            .of_same_rays()
         };
         let question = "What is left of the error where a limit on samples stops the bound, here of 0.001?";
         let default = default_settings().refinement.limit.to_string();
@@ -146,7 +156,7 @@ impl Measurement<'_> {
         format!(
             "root mean square over root mean square colour, all vertices and channels. arithmetic: the device against \
              f64, the same samples and rays. setting: against a sample at each vertex of the same order, faces of {} \
-             texels with {} x {} rays; of bound and limit, whose way leads to a sample at each vertex of the default faces, \
+             texels with {} x {} rays; of bound and limit, whose way leads to a sample at each vertex of their own faces, \
              against those. model: against emitters ray-traced from each vertex, beyond the truth's own noise \
              of {:.1e}; what a vertex does not see is hidden from it to infinity, as in its transfer",
             CONVERGED.0,
@@ -198,7 +208,7 @@ fn gradients_name(gradients: bool, bound: f64) -> String {
 }
 
 /// A triangle in four.
-fn quarters(triangle: &Triangle) -> [Triangle; 4] {
+pub fn quarters(triangle: &Triangle) -> [Triangle; 4] {
     let [a, b, c] = triangle.corners;
     let middle = |x: glam::DVec3, y: glam::DVec3| x.midpoint(y).as_vec3().as_dvec3();
     let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];

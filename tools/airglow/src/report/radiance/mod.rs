@@ -1,6 +1,7 @@
 //! The report on near emitters: the knobs of the pass, its rivals, and the numbers it is held to.
 
 mod curves;
+mod drawn;
 mod numbers;
 mod presets;
 mod race;
@@ -49,10 +50,12 @@ impl Measurement<'_> {
     pub fn all(&self) -> Outcome<(Vec<Curve>, Vec<Number>)> {
         let (methods, reconstruction) = (self.methods()?, self.reconstruction()?);
         let mut knobs = self.knobs()?;
-        let numbers = self.numbers(&knobs[0], &reconstruction)?;
+        let mut numbers = self.numbers(&knobs[0], &reconstruction)?;
+        let drawn = self.drawn()?;
+        numbers.push(drawn::breaks_even(&drawn)?);
         let mut curves = vec![methods, reconstruction];
         curves.append(&mut knobs);
-        curves.extend([self.limit()?, self.stride()?, self.oracle()?, self.triangles()?]);
+        curves.extend([self.limit()?, self.stride()?, self.oracle()?, self.triangles()?, drawn]);
         Ok((curves, numbers))
     }
 

@@ -27,7 +27,7 @@ pub struct Setting {
     pub pass: PassSettings,
     /// Other emitters than the workload's.
     pub emitters: Option<Vec<Triangle>>,
-    /// Whether its converged setting is a sample at each vertex of the default faces: what more samples lead to.
+    /// Whether its converged setting is a sample at each vertex of its own faces: what more samples lead to.
     pub same_rays: bool,
 }
 
@@ -49,7 +49,7 @@ impl Setting {
         Self { name: name.into(), pass, emitters: None, same_rays: false }
     }
 
-    /// The same, whose converged setting is a sample at each vertex of the default faces.
+    /// The same, whose converged setting is a sample at each vertex of its own faces.
     pub fn of_same_rays(self) -> Self {
         Self { same_rays: true, ..self }
     }
@@ -129,10 +129,10 @@ impl Measurement<'_> {
 }
 
 impl Workload {
-    /// Errors against a sample at each vertex of the same order, of the finest rays or of the default's; and against the
+    /// Errors against a sample at each vertex of the same order, of the finest rays or of [`FINE`](super::workload::FINE) ones; and against the
     /// ray-traced truth.
     pub fn errors(&self, order: usize, colours: &[[f32; 3]], same_rays: bool) -> Outcome<Errors> {
-        let converged = if same_rays { self.default_faces(order) } else { self.finest(order) };
+        let converged = if same_rays { self.fine(order) } else { self.finest(order) };
         let setting = relative_l2(&flat(colours), &flat(&converged)).map_err(Failure::work)?;
         Ok(Errors {
             arithmetic: None,

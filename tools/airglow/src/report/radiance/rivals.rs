@@ -17,7 +17,7 @@ use crate::report::model::{Choice, Curve, Errors, Point};
 use crate::report::timed_plan::TimedPlan;
 
 /// What a rival records.
-type Work = Box<dyn Fn(&mut Recorder<'_>) -> Result<(), GpuError> + Send + Sync>;
+pub type Work = Box<dyn Fn(&mut Recorder<'_>) -> Result<(), GpuError> + Send + Sync>;
 
 impl Measurement<'_> {
     /// The pass among its rivals, at as many samples each.
@@ -82,7 +82,8 @@ impl Measurement<'_> {
         bench.buffers(Self::shape(), &self.workload.emitters, points).map_err(Failure::work)
     }
 
-    fn shape() -> LightShape {
+    /// Samples of the default order without gradients.
+    pub fn shape() -> LightShape {
         LightShape { order: default_settings().order, gradients: false }
     }
 
@@ -163,7 +164,8 @@ impl Measurement<'_> {
         Ok((Global::new(bench.context, Self::shape()).map_err(Failure::work)?, work))
     }
 
-    fn rival(
+    /// A plan of one pass.
+    pub fn rival(
         &self,
         setting: String,
         samples: usize,

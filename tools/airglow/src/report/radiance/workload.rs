@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use airglow::math::sh::rotation::Rotation;
 use airglow::radiance::gpu::bench::Bench;
 use airglow::radiance::gpu::{LightShape, TexelSettings, Texels};
-use airglow::radiance::{Hierarchy, PassSettings, Triangle};
+use airglow::radiance::{Hierarchy, Triangle};
 use airglow_bake::{Occluders, Probe};
 use airglow_scene::{Quality, Scene, Shadow};
 use glam::{DMat3, DVec3};
@@ -25,6 +25,9 @@ const FULL: usize = FULL_ORDER * FULL_ORDER;
 /// Cube maps of the converged samples, one at each vertex.
 pub const CONVERGED: (u32, u32) = (32, 4);
 
+/// Cube maps of the curves over bound and limit, whose errors those of rays would hide.
+pub const FINE: (u32, u32) = (16, 4);
+
 /// Samples of a dispatch.
 const BATCH: usize = 2048;
 
@@ -38,9 +41,9 @@ pub struct Workload {
     vectors: Vec<f32>,
     /// Corners are exact in single precision.
     pub emitters: Vec<Triangle>,
-    /// Light of [`FULL_ORDER`] sampled at each vertex, as finely as there is, and by the default's faces.
+    /// Light of [`FULL_ORDER`] sampled at each vertex, as finely as there is, and by [`FINE`] faces.
     finest: Vec<[f32; 3]>,
-    default_faces: Vec<[f32; 3]>,
+    fine: Vec<[f32; 3]>,
     /// Ray-traced colours.
     pub truth: Truth,
 }
@@ -64,9 +67,8 @@ impl Workload {
         let transfer = transfer::of_scene(scene, &quality, cache, output)?;
         let (positions, vectors) = in_the_world(scene, &transfer)?;
         output.say(format!("sampling light at {} vertices", positions.len()));
-        let PassSettings { face, rays, .. } = PassSettings::default();
         let finest = sampled(device, &positions, &emitters, CONVERGED)?;
-        let default_faces = sampled(device, &positions, &emitters, (face, rays))?;
+        let fine = sampled(device, &positions, &emitters, FINE)?;
         output.say("tracing the truth");
         let half = |seed| traced(scene, &positions, &emitters, seed);
         let truth = Truth::of_halves(&half(1)?, &half(2)?)?;
@@ -79,7 +81,7 @@ impl Workload {
             scene.emitters.len(),
             emitters.len()
         );
-        Ok(Self { description, positions, vectors, emitters, finest, default_faces, truth })
+        Ok(Self { description, positions, vectors, emitters, finest, fine, truth })
     }
 
     /// The tree over the vertices with transfer of an order.
@@ -105,9 +107,9 @@ impl Workload {
         self.coloured(order, &self.finest, FULL)
     }
 
-    /// The same from samples of the default's faces at each vertex.
-    pub fn default_faces(&self, order: usize) -> Vec<[f32; 3]> {
-        self.coloured(order, &self.default_faces, FULL)
+    /// The same from samples of [`FINE`] faces at each vertex.
+    pub fn fine(&self, order: usize) -> Vec<[f32; 3]> {
+        self.coloured(order, &self.fine, FULL)
     }
 
     /// `stride` coefficients a vertex, of which those of `order` count.
