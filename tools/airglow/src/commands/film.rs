@@ -49,8 +49,8 @@ pub struct Arguments {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.02)]
     step: f64,
     /// Way of the camera over the whole film: metres to its right, upwards and forwards.
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 3, allow_hyphen_values = true)]
-    fly: Option<Vec<f32>>,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = way)]
+    fly: Option<Vec3>,
     /// Frames of the strip.
     #[arg(long, value_name = "FRAMES", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=12))]
     strip: u32,
@@ -159,10 +159,9 @@ impl Arguments {
     fn move_along(&self, renderer: &mut Renderer<'_>, scene: &Scene, part: f32) {
         #[cfg(feature = "radiance")]
         renderer.move_emitters(part);
-        if let Some([right, up, forwards]) = self.fly.as_deref().and_then(|way| way.first_chunk()) {
+        if let Some(Vec3 { x, y, z }) = self.fly {
             let mut camera = scene.camera();
-            let way = part * Vec3::new(*right, *up, -forwards);
-            camera.transform *= Mat4::from_translation(way);
+            camera.transform *= Mat4::from_translation(part * Vec3::new(x, y, -z));
             renderer.look(camera);
         }
     }
@@ -174,6 +173,15 @@ fn write_frame(path: &std::path::Path, picture: &Picture) -> Outcome {
         std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, "making the folder", error))?;
     }
     write_png_bytes(path, width, height, &picture.display).map_err(Failure::work)
+}
+
+/// `X,Y,Z`.
+fn way(text: &str) -> Result<Vec3, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|number| number.is_finite()) => Ok(Vec3::new(x, y, z)),
+        _ => Err(format!("`{text}` is no way; write it like 0.5,0,1.2")),
+    }
 }
 
 fn mean(values: &[f64]) -> f64 {
