@@ -23,7 +23,8 @@ fn screen(picture: usize, corner: DVec3) -> [Shown; 2] {
 
 #[test]
 fn pictures_are_read_and_light_is_dimmed_as_in_the_reference() {
-    let texel = |i: usize| [(i % 7) as f32, 0.1 * (i % 64) as f32, if i.is_multiple_of(5) { 4.0 } else { 0.0 }];
+    let texel =
+        |i: usize| [(i % 7) as f32, 0.1 * (i % 64) as f32, if i.is_multiple_of(5) { 4.0 } else { 0.0 }];
     let texels: Vec<[f32; 3]> = (0..64 * 48).map(texel).collect();
     let pictures =
         [Picture { size: [64, 48], texels: &texels }, Picture { size: [5, 3], texels: &texels[..15] }];
