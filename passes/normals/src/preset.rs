@@ -19,16 +19,3 @@ impl From<Preset> for Settings {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn medium_is_the_default_and_every_preset_is_accepted() {
-        assert_eq!(Settings::from(Preset::Medium), Settings::default());
-        for preset in Preset::ALL {
-            Settings::from(preset).check().unwrap();
-        }
-    }
-}

@@ -24,14 +24,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn medium_is_the_default_and_every_preset_is_accepted() {
-        assert_eq!(PassSettings::from(Preset::Medium), PassSettings::default());
-        for preset in Preset::ALL {
-            PassSettings::from(preset).check().unwrap();
-        }
-    }
-
-    #[test]
     fn samples_that_do_not_fit_are_halved_until_they_do() {
         let nodes = 2 * 20_000 - 1;
         for preset in Preset::ALL {

@@ -17,14 +17,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn medium_is_the_default_and_every_preset_is_accepted() {
-        assert_eq!(Settings::from(Preset::Medium), Settings::default());
-        for preset in Preset::ALL {
-            Settings::from(preset).check().unwrap();
-        }
-    }
-
-    #[test]
     fn bytes_are_known_before_anything_is_made_and_what_does_not_fit_names_what_does() {
         let bytes = Preset::ALL.map(|preset| Settings::from(preset).mesh_bytes(10_000));
         assert!(bytes.is_sorted_by(|a, b| a < b), "{bytes:?}");

@@ -22,15 +22,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn medium_is_the_default_and_every_preset_is_accepted() {
-        assert_eq!(Settings::from(Preset::Medium), Settings::default());
-        for preset in Preset::ALL {
-            Settings::from(preset).check().unwrap();
-            Settings { normals: true, ..Settings::from(preset) }.check().unwrap();
-        }
-    }
-
-    #[test]
     fn visibility_that_does_not_fit_becomes_that_of_the_preset_below() {
         for preset in Preset::ALL {
             let settings = Settings::from(preset);

@@ -26,6 +26,10 @@ const WOVEN: &str = "assets/scenes/weave.toml";
 pub fn presets(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Report> {
     let bench = Bench { quick: arguments.quick, cache: Path::new(CACHE), global, output };
     let scene = |pass: Pass| SceneOptions::plain(Path::new(pass.scene()), None).load(output);
+    #[cfg_attr(
+        not(any(feature = "fog", feature = "normals", feature = "radiance", feature = "shadow")),
+        expect(unused_mut, reason = "other rooms add to it")
+    )]
     let mut measured = vec![bench.relight(&scene(Pass::Relight)?)?];
     #[cfg(feature = "fog")]
     measured.push(bench.fog(&scene(Pass::Fog)?)?);
@@ -63,6 +67,7 @@ pub fn presets(arguments: &Arguments, global: &Global, output: &Output) -> Outco
 const SIZE: [u32; 2] = [320, 180];
 const SIZES: [[u32; 2]; 5] = [[80, 45], [160, 90], [320, 180], [640, 360], [1280, 720]];
 /// Vertices of a scene of which every one is sampled and traced, without `--full`.
+#[cfg(feature = "radiance")]
 const FEW: usize = 20_000;
 
 /// The report on a scene's frame.
@@ -113,6 +118,7 @@ fn vertices(scene: &Scene) -> usize {
 }
 
 /// The presets of each pass that has something to do in the scene; and why others are not there.
+#[cfg_attr(not(feature = "radiance"), expect(unused_variables, reason = "only near emitters take minutes"))]
 fn rooms(bench: &Bench<'_>, scene: &Scene, full: bool) -> (Vec<Curve>, Vec<String>) {
     let (mut curves, mut remarks) = (Vec::new(), Vec::new());
     let mut keep = |room: &str, measured: Outcome<Option<Measured>>| match measured {

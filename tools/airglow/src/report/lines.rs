@@ -42,7 +42,14 @@ fn draw(
         };
         plot::line(&mut chart, &line.name, line.points.iter().copied(), colour, width)?;
     }
-    plot::legend(&mut chart)?;
+    // Lines that rise end where the names would be.
+    let rises =
+        |line: &Series| line.points.first().zip(line.points.last()).is_some_and(|(a, b)| b.1 > 2.0 * a.1);
+    let corner = match series.iter().any(rises) {
+        true => SeriesLabelPosition::UpperLeft,
+        false => SeriesLabelPosition::UpperRight,
+    };
+    plot::legend(&mut chart, corner)?;
     area.present()?;
     Ok(())
 }

@@ -168,7 +168,7 @@ fn draw(
                 + Text::new(dot.setting.clone(), offset, ("sans-serif", 13)),
         ))?;
     }
-    legend(&mut chart)?;
+    legend(&mut chart, SeriesLabelPosition::UpperRight)?;
     area.present()?;
     Ok(())
 }
@@ -188,13 +188,14 @@ pub(super) fn line<'a, C: CoordTranslate<From = (f64, f64)>>(
     Ok(())
 }
 
-/// The names of all lines, in the upper right.
+/// The names of all lines, in a corner.
 pub(super) fn legend<'a, 'b: 'a, C: CoordTranslate>(
     chart: &mut ChartContext<'a, SVGBackend<'b>, C>,
+    corner: SeriesLabelPosition,
 ) -> Result<(), Box<dyn std::error::Error>> {
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(corner)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 200))
         .label_font(("sans-serif", 13))

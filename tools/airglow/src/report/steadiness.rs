@@ -43,7 +43,7 @@ fn draw(svg: &mut String, first: &[f64], second: &[f64]) -> Result<(), Box<dyn s
         let points = values.iter().enumerate().map(|(at, value)| ((at + start) as f64, *value));
         plot::line(&mut chart, name, points, colour, 2)?;
     }
-    plot::legend(&mut chart)?;
+    plot::legend(&mut chart, SeriesLabelPosition::UpperRight)?;
     area.present()?;
     Ok(())
 }

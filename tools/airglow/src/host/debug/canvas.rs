@@ -28,6 +28,7 @@ impl Shown<'_> {
     }
 
     /// The same number at each vertex, for instances that have no values.
+    #[cfg(any(feature = "normals", feature = "shadow"))]
     pub fn everywhere(&self, instance: usize, value: f32) -> Vec<f32> {
         vec![value; self.scene.meshes[self.scene.instances[instance].mesh].positions.len()]
     }

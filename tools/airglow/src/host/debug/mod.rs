@@ -36,6 +36,10 @@ pub struct View {
 
 /// All views of the rooms that are there.
 pub fn views() -> Vec<View> {
+    #[cfg_attr(
+        not(any(feature = "fog", feature = "normals", feature = "radiance", feature = "shadow")),
+        expect(unused_mut, reason = "other rooms add to it")
+    )]
     let mut views: Vec<View> = relight::VIEWS.into();
     #[cfg(feature = "fog")]
     views.extend(fog::VIEWS);

@@ -19,8 +19,10 @@ pub struct Probed {
     /// `[f32; 4]` a vertex: the light that a white diffuse surface sends out.
     pub colours: Vec<Vec<[f32; 4]>>,
     /// Dynamic visibility, as many coefficients a vertex as relighting has.
+    #[cfg(feature = "shadow")]
     pub visibility: Vec<Vec<f32>>,
     /// Light of near emitters, as many coefficients a vertex.
+    #[cfg(feature = "radiance")]
     pub light: Vec<Vec<[f32; 3]>>,
     /// Spheres looked at by each cluster of receivers, and receivers clamped.
     #[cfg(feature = "shadow")]
@@ -61,6 +63,7 @@ impl Shown<'_> {
             normals: posed.iter().find(|posed| posed.instance == number).map(|posed| posed.normals),
             ..Instance::new(lit.meshes[instance.transfer])
         });
+        #[cfg_attr(not(feature = "radiance"), expect(unused_mut, reason = "only near emitters change it"))]
         let mut relit =
             Frame { light: environment.unwrap_or(Light::None), instances: instances.collect(), target: None };
         #[cfg(feature = "radiance")]
@@ -77,7 +80,9 @@ impl Shown<'_> {
         let kept = |graph: &mut Graph<_>, buffer: Option<_>| {
             buffer.map(|buffer| Kept::add(graph, "read back", buffer))
         };
+        #[cfg(feature = "radiance")]
         let light: Vec<_> = relit.instances.iter().map(|instance| kept(&mut graph, instance.light)).collect();
+        #[cfg(feature = "shadow")]
         let visibility: Vec<_> =
             relit.instances.iter().map(|instance| kept(&mut graph, instance.visibility)).collect();
         let result = lit.relight.add(context, &mut graph, &mut imports, &relit).map_err(Failure::work)?;
@@ -95,7 +100,9 @@ impl Shown<'_> {
         };
         Ok(Probed {
             colours: result.ranges.iter().map(of).collect(),
+            #[cfg(feature = "shadow")]
             visibility: taken(&visibility)?,
+            #[cfg(feature = "radiance")]
             light: taken(&light)?,
             #[cfg(feature = "shadow")]
             records: records(&shadowed)?,
@@ -104,6 +111,7 @@ impl Shown<'_> {
 }
 
 /// What was kept of each instance; nothing of those without.
+#[cfg(any(feature = "radiance", feature = "shadow"))]
 fn taken<T: bytemuck::Pod>(kept: &[Option<Kept>]) -> Outcome<Vec<Vec<T>>> {
     kept.iter().map(|kept| kept.as_ref().map_or(Ok(Vec::new()), Kept::take)).collect()
 }

@@ -1,12 +1,8 @@
 //! The sweeps of sizes of each pass, whatever the scene.
 
-use std::path::Path;
-
 use airglow::relight::{Relight, Settings};
 
 use super::scaling::Scaling;
-use crate::commands::report::Pass;
-use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
 use crate::host::device;
 use crate::report::interleave::Rounds;
@@ -17,11 +13,20 @@ use crate::report::relight::scaling;
 const ROUNDS: Rounds = Rounds { warm_up: 2, measured: 7 };
 
 /// What `--full` does.
+#[cfg(feature = "radiance")]
 const FULL: &str = "1000, with --full";
 
 impl Bench<'_> {
     /// All of them; the longest only with `full`.
+    #[cfg_attr(
+        not(feature = "radiance"),
+        expect(unused_variables, reason = "only near emitters take minutes")
+    )]
     pub fn sweeps(&self, full: bool) -> Outcome<Vec<Scaling>> {
+        #[cfg_attr(
+            not(any(feature = "fog", feature = "radiance", feature = "shadow")),
+            expect(unused_mut, reason = "other rooms add to it")
+        )]
         let mut sweeps = vec![self.vertices()?];
         #[cfg(feature = "fog")]
         sweeps.push(self.lights()?);
@@ -44,8 +49,9 @@ impl Bench<'_> {
 
     #[cfg(feature = "fog")]
     fn lights(&self) -> Outcome<Scaling> {
+        use crate::commands::{report::Pass, scene::SceneOptions};
         use crate::report::fog::{Effort, Measurement};
-        let scene = SceneOptions::plain(Path::new(Pass::Fog.scene()), None).load(self.output)?;
+        let scene = SceneOptions::plain(Pass::Fog.scene().as_ref(), None).load(self.output)?;
         let requirements = airglow::fog::Fog::requirements(&airglow::fog::Settings::default());
         let points = device::with(self.global, &requirements, |device| {
             Measurement { device, effort: Effort::new(self.quick), output: self.output }.lights_of(&scene)
