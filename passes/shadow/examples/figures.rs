@@ -7,9 +7,9 @@ use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 
 use airglow_gpu::{GpuError, Recorder};
-use airglow_shadow::families::Random;
+use airglow_shadow::families::figure;
 use airglow_shadow::spheres::{FitSettings, Hierarchy, fit};
-use airglow_shadow::{Bench, Blockers, Settings, Shadow, Sphere};
+use airglow_shadow::{Bench, Blockers, Settings, Shadow};
 use airglow_tests::device::fixture_with;
 use glam::{DMat4, DVec3};
 
@@ -39,17 +39,6 @@ fn knot(side: u32) -> (Vec<[f32; 3]>, Vec<u32>) {
         [a, b, c, a, c, d]
     };
     ((0..side * side).map(point).collect(), (0..side * side).flat_map(quad).collect())
-}
-
-/// A standing body of spheres.
-fn body(count: usize) -> Vec<Sphere> {
-    let mut random = Random::new(3);
-    let sphere = |i: usize| {
-        let t = (i as f64 + 0.5) / count as f64;
-        let center = DVec3::new(0.15 * (17.0 * t).sin(), 1.75 * t, 0.1 * (23.0 * t).cos());
-        Sphere { center, radius: 0.06 + 0.08 * random.unit() }
-    };
-    (0..count).map(sphere).collect()
 }
 
 /// Ground, and a fifth of the receivers on a body that stands on it, with normals.
@@ -100,7 +89,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// One frame by stage: each is what it adds to the ones before.
 fn frame(bench: &Bench<'_>, order: usize, count: usize, spheres: usize) -> Result<(), Box<dyn Error>> {
-    let ([positions, normals], body) = (receivers(count), body(spheres));
+    let ([positions, normals], body) = (receivers(count), figure(spheres));
     let hierarchy = Hierarchy::new(&body, order)?;
     let blockers = Blockers::default();
     let begin = Instant::now();

@@ -7,7 +7,7 @@ use std::error::Error;
 use airglow_math::sequence::{cosine_hemisphere, hammersley};
 use airglow_math::sh::project;
 use airglow_math::sphere::equirect::{direction, uv};
-use airglow_shadow::families::Random;
+use airglow_shadow::families::figure;
 use airglow_shadow::light::split;
 use airglow_shadow::reference::{Reference, caps};
 use airglow_shadow::spheres::Hierarchy;
@@ -42,17 +42,6 @@ fn radiance(texels: &[[f32; 3]], d: DVec3) -> [f64; 3] {
     texels[place(v, SIZE[1]) * SIZE[0] + place(u, SIZE[0])].map(f64::from)
 }
 
-/// A standing body of spheres.
-fn body() -> Vec<Sphere> {
-    let mut random = Random::new(3);
-    let sphere = |i: usize| {
-        let t = (f64::from(i as u32) + 0.5) / 60.0;
-        let center = DVec3::new(0.15 * (17.0 * t).sin(), 0.1 + 1.7 * t, 0.1 * (23.0 * t).cos());
-        Sphere { center, radius: 0.06 + 0.06 * random.unit() }
-    };
-    (0..60).map(sphere).collect()
-}
-
 /// What rays find: those of the rest, and those of the disc, which are few and bright, by themselves.
 fn truth(rest: &[[f32; 3]], disc: &Disc, spheres: &[Sphere], place: DVec3) -> [f64; 3] {
     let caps = caps(spheres, place);
@@ -77,7 +66,7 @@ fn truth(rest: &[[f32; 3]], disc: &Disc, spheres: &[Sphere], place: DVec3) -> [f
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (texels, spheres) = (sky(), body());
+    let (texels, spheres) = (sky(), figure(60));
     let (rest, disc) = split(SIZE, &texels, &SplitSettings::default())?;
     let disc = disc.ok_or("no sun was found")?;
     let off = disc.direction.dot(sun()).clamp(-1.0, 1.0).acos().to_degrees();

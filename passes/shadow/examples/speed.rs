@@ -6,7 +6,7 @@ use std::cell::RefCell;
 
 use airglow_gpu::{GpuError, Recorder};
 use airglow_shadow::bench::{RowKernel, Scene, SphereKernel};
-use airglow_shadow::families::Random;
+use airglow_shadow::families::figure;
 use airglow_shadow::reference::{caps, rms, truth};
 use airglow_shadow::{Bench, Exponential, Settings, Shadow, ShadowError, Sphere};
 use airglow_tests::device::fixture_with;
@@ -29,25 +29,6 @@ fn ways() -> [(&'static str, SphereKernel, Exponential); 6] {
         ("squares", SphereKernel::Pass, Exponential::Horner { degree: 2, norm: 0.25 }),
         ("OL", SphereKernel::Pass, Exponential::OptimalLinear),
     ]
-}
-
-/// Spheres of a standing figure, 1.8 m tall, sixty by default: legs, body, arms and head as rows of spheres.
-fn figure(count: usize) -> Vec<Sphere> {
-    let mut random = Random::new(count as u32);
-    let limbs = [
-        ([0.15, 0.1, 0.0], [0.1, 0.9, 0.05], 0.09),
-        ([-0.15, 0.1, 0.1], [-0.1, 0.9, -0.05], 0.09),
-        ([0.0, 0.9, 0.0], [0.0, 1.45, 0.0], 0.17),
-        ([0.2, 1.4, 0.0], [0.35, 0.8, 0.15], 0.06),
-        ([-0.2, 1.4, 0.0], [-0.35, 0.8, -0.15], 0.06),
-        ([0.0, 1.55, 0.0], [0.0, 1.75, 0.0], 0.11),
-    ];
-    let sphere = |i: usize| {
-        let (from, to, radius) = limbs[i % limbs.len()];
-        let place = DVec3::from_array(from).lerp(DVec3::from_array(to), random.unit());
-        Sphere { center: place + 0.02 * random.direction(), radius: radius * (0.8 + 0.4 * random.unit()) }
-    };
-    (0..count).map(sphere).collect()
 }
 
 fn ground() -> Vec<[f32; 3]> {

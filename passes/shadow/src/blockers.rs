@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::{DMat3, DMat4};
+use glam::{DMat3, DMat4, DVec3};
 
 use crate::spheres::Node;
 use crate::{ShadowError, Sphere};
@@ -85,6 +85,19 @@ impl Blockers {
         self.lock().iter().all(|range| range.spheres.iter().all(|sphere| sphere[3] <= 0.0))
     }
 
+    /// Whether some sphere hides `reach` or more of a half space from somewhere within `bound`, in the space of the receivers;
+    /// see [`Settings::reach`](crate::Settings::reach). Where none does, all receivers in it see everything, and a host may
+    /// take an instance's dynamic visibility for nothing that frame, as relighting's `Shown::set_shadowed` does.
+    #[must_use]
+    pub fn reach(&self, bound: &Sphere, reach: f64) -> bool {
+        let reaches = |[x, y, z, radius]: &[f32; 4]| {
+            let distance = DVec3::new(f64::from(*x), f64::from(*y), f64::from(*z)).distance(bound.center);
+            let center = DVec3::X * (distance - bound.radius).max(0.0);
+            *radius > 0.0 && Sphere { center, radius: f64::from(*radius) }.cap(DVec3::ZERO).height >= reach
+        };
+        self.lock().iter().any(|range| range.spheres.iter().any(reaches))
+    }
+
     /// The ranges to be dispatched one after the other: one at least.
     pub(crate) fn ranges(&self) -> Vec<Range> {
         let held = self.lock();
@@ -137,7 +150,7 @@ fn uniform_scale(matrix: DMat3) -> Result<f64, ShadowError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DQuat, DVec3};
+    use glam::DQuat;
 
     #[test]
     fn spheres_follow_the_matrix() {
@@ -152,6 +165,21 @@ mod tests {
         assert!(!blockers.is_empty());
         blockers.set(&[Sphere { center: DVec3::X, radius: 0.0 }], DMat4::IDENTITY).unwrap();
         assert!(blockers.is_empty());
+    }
+
+    #[test]
+    fn a_bound_is_reached_from_near_and_not_from_afar() {
+        let blockers = Blockers::default();
+        let bound = Sphere { center: DVec3::ZERO, radius: 2.0 };
+        assert!(!blockers.reach(&bound, 0.0));
+        let at = |x: f64| [Sphere { center: DVec3::X * x, radius: 0.1 }];
+        // From 30 away a sphere of 0.1 hides 5.6e-6 of a half space.
+        for (x, reached) in [(0.0, true), (2.0, true), (10.0, true), (32.0, false)] {
+            blockers.set(&at(x), DMat4::IDENTITY).unwrap();
+            assert_eq!(blockers.reach(&bound, 1e-5), reached, "{x}");
+        }
+        blockers.set(&at(32.0), DMat4::from_translation(DVec3::X * -20.0)).unwrap();
+        assert!(blockers.reach(&bound, 1e-5));
     }
 
     #[test]

@@ -145,7 +145,7 @@ impl Evaluator {
 
     /// The polynomial of the vector's own interval; where the result has an excess, that of as much less of the vector.
     fn polynomial(&self, f: &[f64]) -> Result<Vec<f64>, ShadowError> {
-        let scale = shortening(without_mean(f));
+        let scale = shortening(self.product.order(), f[0] / ONE, without_mean(f))?;
         let g = self.polynomial_of(f, scale)?;
         match excess(&g) {
             more if more > EXCESS => self.polynomial_of(f, scale * EXCESS / more),
@@ -295,6 +295,26 @@ mod tests {
     #[test]
     fn the_constant_is_that_of_the_basis() {
         assert!((ONE / (4.0 * std::f64::consts::PI).sqrt() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn spheres_in_one_place_stay_near_one_of_them() {
+        for order in 3..=6 {
+            let reference = crate::reference::Reference::new(order).unwrap();
+            for degrees in [20.0_f64, 45.0] {
+                let height = crate::circle::height(degrees.to_radians()).unwrap();
+                let cap = crate::Cap { axis: glam::DVec3::Z, height };
+                let truth = reference.chain(&[cap]).unwrap();
+                let one = reference.log_visibility(&[cap]).unwrap();
+                for count in [24.0, 1000.0] {
+                    let f: Vec<f64> = one.iter().map(|value| count * value).collect();
+                    let found = reference.evaluator().exponential(Exponential::Adaptive, &f).unwrap();
+                    let error = norm(&found, &truth) / ONE;
+                    println!("order {order}, {count} of {degrees} degrees: {error:.3}");
+                    assert!(error < 0.2, "order {order}, {count} of {degrees} degrees: {error}");
+                }
+            }
+        }
     }
 
     #[test]

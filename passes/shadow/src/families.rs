@@ -55,6 +55,25 @@ impl Cap {
     }
 }
 
+/// Spheres of a standing figure, 1.8 m tall: legs, body, arms and head as rows of spheres, in turn.
+#[must_use]
+pub fn figure(count: usize) -> Vec<Sphere> {
+    let mut random = Random::new(count as u32);
+    let limbs = [
+        ([0.15, 0.1, 0.0], [0.1, 0.9, 0.05], 0.09),
+        ([-0.15, 0.1, 0.1], [-0.1, 0.9, -0.05], 0.09),
+        ([0.0, 0.9, 0.0], [0.0, 1.45, 0.0], 0.17),
+        ([0.2, 1.4, 0.0], [0.35, 0.8, 0.15], 0.06),
+        ([-0.2, 1.4, 0.0], [-0.35, 0.8, -0.15], 0.06),
+        ([0.0, 1.55, 0.0], [0.0, 1.75, 0.0], 0.11),
+    ];
+    let sphere = |(_, (from, to, radius)): (usize, ([f64; 3], [f64; 3], f64))| {
+        let place = DVec3::from_array(from).lerp(DVec3::from_array(to), random.unit());
+        Sphere { center: place + 0.02 * random.direction(), radius: radius * (0.8 + 0.4 * random.unit()) }
+    };
+    (0..count).zip(limbs.into_iter().cycle()).map(sphere).collect()
+}
+
 /// A sequence of pseudo-random numbers (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
 #[derive(Clone, Debug)]
 pub struct Random(u64);

@@ -27,6 +27,9 @@ const WIDEST: f64 = 16.0;
 /// The longest that a sum of logarithms may be without its mean; a longer one is scaled to it. Thirty spheres of 20 to 50
 /// degrees all around come to 24 at order 6, and lose nothing.
 const LONGEST: f64 = 15.0;
+/// The highest that the upper end of an interval may be without [`RINGING`]'s bound: what a polynomial is off grows with its
+/// exponential, here to [`TOLERANCE`] times 12. Only thirty such spheres come so high, to 2.7.
+const HIGHEST: f64 = 2.5;
 /// The excess that is taken for rounding and for what series and polynomials are off.
 pub(crate) const EXCESS: f64 = 0.05;
 /// Added to a mean, so that noise about 0 has no excess.
@@ -59,9 +62,15 @@ impl Interval {
     }
 }
 
-/// What a vector is scaled by so that it is not longer than [`LONGEST`].
-pub(crate) fn shortening(norm: f64) -> f64 {
-    if norm > LONGEST { LONGEST / norm } else { 1.0 }
+/// What a vector with a mean and a norm without it is scaled by, so that it is not longer than [`LONGEST`], and its interval
+/// no higher than [`HIGHEST`].
+///
+/// # Errors
+/// [`ShadowError::Order`].
+pub(crate) fn shortening(order: usize, mean: f64, norm: f64) -> Result<f64, ShadowError> {
+    check_order(order)?;
+    let top = mean + 0.5 * BOUND[order - MIN_ORDER] * norm;
+    Ok((LONGEST / norm.max(LONGEST)).min(HIGHEST / top.max(HIGHEST)))
 }
 
 /// The logarithm of the integral of a function's square over that of the function. That of a function from 0 to 1 is 0 at

@@ -51,12 +51,14 @@ layout(std430, set = 0, binding = 7) readonly buffer Table {
 #include "shadow/cap.glsl"
 #include "shadow/exponential.glsl"
 
-// By kind, one bit a node.
+// By kind, one bit a node: small caps that count as they are, and others.
 const uint SMALL = 0u;
 const uint LARGE = 1u;
 shared uint chosen[2][MOST_NODES / 32u];
 // Of each kind, words up to the last that is not 0.
 shared uint words[2];
+// Of nodes that are not small: the share they count by.
+shared float weights[MOST_NODES];
 
 
 // The largest square of the sine that a sphere may have as a cap from somewhere in a bound.
@@ -72,8 +74,15 @@ float height_of(float sine2)
     return sine2 / (1.0 + sqrt(1.0 - sine2));
 }
 
-// Chooses the cut of the hierarchy: nodes that stand for themselves below nodes that do not. A node lies within the one
-// that holds it, so that none below a node that stands is taken by looking at its holder alone.
+// How far a node of a height gives way to what it holds, from 0 to 1: from the cut on by and by, so that what moves does
+// not step.
+float gives_way(float height, float cut)
+{
+    return cut > 0.0 ? clamp((height / cut - 1.0) / 0.2, 0.0, 1.0) : 1.0;
+}
+
+// Chooses the cut of the hierarchy: nodes that stand for themselves below nodes that give way. A node lies within the one
+// that holds it and is never higher, so that shares along every way down add up to 1 by looking at its holder alone.
 void choose(uint lane, vec4 bound, float reach, float cut)
 {
     if (lane < MOST_NODES / 32u) {
@@ -86,17 +95,19 @@ void choose(uint lane, vec4 bound, float reach, float cut)
         vec4 sphere = spheres.values[at];
         vec4 node = nodes.values[at];
         float sine2 = largest_square(sphere, bound);
-        float height = sphere.w > 0.0 ? height_of(sine2) : -1.0;
-        bool taken = height >= reach && (node.z == 0.0 || height < cut);
-        if (taken && node.y >= 0.0) {
-            taken = height_of(largest_square(spheres.values[uint(node.y)], bound)) >= cut;
+        float height = height_of(sine2);
+        float weight = node.z == 0.0 ? 1.0 : 1.0 - gives_way(height, cut);
+        if (node.y >= 0.0) {
+            float holder = height_of(largest_square(spheres.values[uint(node.y)], bound));
+            weight -= 1.0 - gives_way(max(holder, height), cut);
         }
-        if (taken) {
+        if (weight > 0.0 && sphere.w > 0.0 && height >= reach) {
 #if EXPONENTIAL < 7
-            uint kind = sine2 < factors.least.x ? SMALL : LARGE;
+            uint kind = weight == 1.0 && sine2 < factors.least.x ? SMALL : LARGE;
 #else
             uint kind = SMALL;
 #endif
+            weights[at] = weight;
             atomicOr(chosen[kind][at / 32u], 1u << (at % 32u));
             atomicMax(words[kind], at / 32u + 1u);
         }
@@ -231,6 +242,7 @@ uint accumulate_kind(uint kind, Receiver receivers[RECEIVERS], inout float sums[
                 uint at = 32u * word + (uint(findLSB(bits)) & 31u);
                 taken[turn] = spheres.values[at];
                 shares[turn] = bits != 0u ? nodes.values[at].x : 0.0;
+                if (kind == LARGE) { shares[turn] *= weights[at]; }
                 bits &= bits - 1u;
             }
             for (int r = 0; r < RECEIVERS; ++r) {

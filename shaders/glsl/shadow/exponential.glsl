@@ -20,6 +20,8 @@
 #include "shadow/product5.glsl"
 #elif ORDER == 6
 #include "shadow/product6.glsl"
+#include "common/sh_basis.glsl"
+#include "shadow/latitudes6.glsl"
 #else
 #error exponential.glsl: define ORDER as 3, 4, 5 or 6
 #endif
@@ -68,6 +70,8 @@ const float BOUND = ORDER == 3 ? 0.4947 : ORDER == 4 ? 0.6873 : ORDER == 5 ? 0.8
 
 // No logarithm of what blocks in different places is longer without its mean.
 const float LONGEST = 15.0;
+// Nor has its product matrix eigenvalues that may be higher: what a polynomial is off grows with their exponential.
+const float HIGHEST = 2.5;
 // From which on spheres in one place were counted for each.
 const float EXCESS = 0.05;
 
@@ -78,6 +82,13 @@ vec2 eigenvalues(float mean, float norm)
     float up = min(reach, max(0.2 - mean, 0.5 * reach));
     return vec2(mean + up, 0.5 * (up + reach));
 }
+
+#if ORDER == 6
+// In a loop: a straight line of so many products is compiled for long, and is no faster.
+#define step_product sh_product_by_latitudes
+#else
+#define step_product sh_product
+#endif
 
 // By Horner's rule: the two highest powers, then a product for each lower one, then squarings; one loop, so that the product
 // stands in the program once. Without `row` coefficients are those of the series.
@@ -93,7 +104,7 @@ void horner(float f[COUNT], float begin, uint degree, uint row, bool series, uin
         float left[COUNT];
         float h[COUNT];
         EACH(i) { left[i] = squaring ? g[i] : f[i]; }
-        sh_product(left, g, h);
+        step_product(left, g, h);
         g = h;
         if (!squaring) {
             uint power = steps - 1u - at;
@@ -126,7 +137,8 @@ void exponential(inout float f[COUNT], Exponential how)
     } else {
         mean = f[0] / ONE;
         norm = without_mean(f);
-        scale = norm > LONGEST ? LONGEST / norm : 1.0;
+        float top = mean + 0.5 * BOUND * norm;
+        scale = min(LONGEST / max(norm, LONGEST), HIGHEST / max(top, HIGHEST));
     }
     float g[COUNT];
     // Where spheres in one place were counted for each, once more with as much less of all.

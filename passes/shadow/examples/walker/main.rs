@@ -2,7 +2,6 @@
 //! `assets/mesh/walker.glb` on the ground, its shadow by the pass on the device at orders 3 to 6 and, on the right, by rays
 //! against the mesh itself; the error of each order, and what the pass counted.
 
-mod pose;
 mod view;
 
 use std::error::Error;
@@ -14,6 +13,7 @@ use airglow_gpu::{GpuError, Recorder};
 use airglow_math::sequence::{cosine_hemisphere, hammersley};
 use airglow_math::sh::{evaluate, product::TripleProduct, project};
 use airglow_scene::image_io::write_png;
+use airglow_scene::{Figure, Scene};
 use airglow_shadow::reference::caps;
 use airglow_shadow::spheres::{FitSettings, Hierarchy, fit, skinned, weights};
 use airglow_shadow::{Bench, Blockers, Settings, Shadow, Sphere};
@@ -101,13 +101,30 @@ fn error(picture: &Picture, found: &[DVec3], truth: &[DVec3]) -> f64 {
     (square / size).sqrt()
 }
 
+/// World from mesh for each joint of the first instance, at a time of the first animation.
+fn joints(scene: &Scene, seconds: f32) -> Vec<Mat4> {
+    let walker = Figure {
+        name: "walker".to_owned(),
+        instances: 0..1,
+        meshes: vec![0],
+        root: 0,
+        animation: Some(0),
+        time: 0.0,
+        velocity: [0.0; 3],
+        spheres: SPHERES as u32,
+    };
+    let pose = scene.pose(&walker, seconds);
+    scene.joints(&scene.instances[0], &pose)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let out = arguments.next().unwrap_or_else(|| "walker.png".to_owned());
     let seconds: f32 = arguments.next().map_or(Ok(0.2), |text| text.parse())?;
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/mesh/walker.glb");
     let scene = airglow_scene::load(&file)?;
-    let (mesh, joints) = (&scene.meshes[0], pose::joints(&scene, seconds));
+    let mesh = &scene.meshes[0];
+    let joints = joints(&scene, seconds);
     let begin = Instant::now();
     let set = fit(
         &mesh.positions,
@@ -124,8 +141,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         set.volume
     );
     let bound = weights(&set, &mesh.joints, &mesh.weights)?;
-    let spheres: Vec<Sphere> = skinned(&set.spheres, &bound, &joints);
-    let positions = pose::skinned(&mesh.positions, mesh, &joints);
+    let wide: Vec<DMat4> = joints.iter().map(Mat4::as_dmat4).collect();
+    let spheres: Vec<Sphere> = skinned(&set.spheres, &bound, &wide);
+    let (positions, _) = mesh.posed(&joints);
     let picture = view::trace(&positions, &mesh.indices);
     let exact = truth(&picture, &positions, &mesh.indices)?;
     let spheres_alone = by_spheres(&picture, &spheres);

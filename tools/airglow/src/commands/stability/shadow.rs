@@ -71,21 +71,34 @@ impl Trial<'_> {
         normal: Option<[f32; 3]>,
         spheres: &[Sphere],
     ) -> Result<Frame, ShadowError> {
-        let key = (order, clamp, normal.is_some());
-        let made = self.passes.borrow().get(&key).cloned();
-        let pass = match made {
-            Some(pass) => pass,
-            None => {
-                let settings =
-                    Settings { order, clamp, normals: normal.is_some(), reach: 0.0, ..Settings::default() };
-                let pass = self.bench.shadow(settings, SphereKernel::Pass)?;
-                self.passes.borrow_mut().insert(key, pass.clone());
-                pass
-            }
-        };
+        let pass = self.pass(order, clamp, normal.is_some())?;
         let normals = normal.as_slice();
         let normals = (!normals.is_empty()).then_some(normals);
         self.bench.frame(&pass, &Scene { positions: &[[0.0; 3]], normals, spheres }, 1)
+    }
+
+    /// Visibility of several receivers in the air, clamped.
+    fn receivers(
+        &self,
+        order: usize,
+        positions: &[[f32; 3]],
+        spheres: &[Sphere],
+    ) -> Result<Vec<f64>, ShadowError> {
+        let pass = self.pass(order, true, false)?;
+        let frame = self.bench.frame(&pass, &Scene { positions, normals: None, spheres }, 1)?;
+        Ok(frame.values.into_iter().map(f64::from).collect())
+    }
+
+    /// A pass that was made before, or a new one.
+    fn pass(&self, order: usize, clamp: bool, normals: bool) -> Result<Shadow, ShadowError> {
+        let key = (order, clamp, normals);
+        if let Some(pass) = self.passes.borrow().get(&key) {
+            return Ok(pass.clone());
+        }
+        let settings = Settings { order, clamp, normals, reach: 0.0, ..Settings::default() };
+        let pass = self.bench.shadow(settings, SphereKernel::Pass)?;
+        self.passes.borrow_mut().insert(key, pass.clone());
+        Ok(pass)
     }
 }
 

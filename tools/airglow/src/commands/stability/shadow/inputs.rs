@@ -54,6 +54,7 @@ pub fn rows(trial: &Trial<'_>, only: Option<&str>) -> Result<Vec<Row>, ShadowErr
         }
         rows.extend(overlapping(trial, only, order)?);
         rows.extend(gathered(trial, only, order)?);
+        rows.extend(broken(trial, only, order)?);
         rows.extend(below(trial, only, order)?);
         rows.extend(long_vectors(trial, only, order)?);
         rows.extend(peak(trial, only, order)?);
@@ -83,8 +84,8 @@ fn overlapping(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Op
     )))
 }
 
-/// A thousand blockers in one place, whose logarithms add up to more than there is: the result must be one that a
-/// visibility can be, though it is not the true one.
+/// A thousand blockers in one place, whose logarithms add up to more than there is: what is hidden once is to be hidden, and
+/// the rest to be open. All open would be twice the bound off the truth.
 fn gathered(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<Row>, ShadowError> {
     let name = format!("1000 blockers in one place, order {order}");
     if !wanted(only, &name) {
@@ -97,21 +98,58 @@ fn gathered(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Optio
     let sky = Sky { order, spheres: (0..1000).map(place).collect(), clamp: true };
     let (found, _, clamped) = sky.visibility(trial)?;
     let truth = truth(order, DEGREE, &caps(&sky.spheres, DVec3::ZERO))?;
-    // A mean from 0 to 1, and a square whose integral is no more than its own.
-    let square: f64 = found.iter().map(|value| value * value).sum::<f64>() / (4.0 * std::f64::consts::PI);
-    let beyond = (square - open(&found)).max(-open(&found)).max(open(&found) - 1.0).max(0.0);
-    let finite = found.iter().all(|value| value.is_finite());
+    let all = open_everywhere(order);
     Ok(Some(row(
         &name,
-        "spheres of radius 1 within 0.35 of one another; the error is how far the result is from one that a visibility \
-         can be: what it is off the truth is the model's"
-            .to_owned(),
-        format!("open {:.4}, mean square {square:.4}; {clamped} receiver clamped", open(&found)),
-        format!("open {:.4}", open(&truth)),
-        if finite { beyond } else { f64::INFINITY },
-        1e-5,
+        "spheres of radius 1 within 0.35 of one another".to_owned(),
+        format!("open {:.4}; {clamped} receiver clamped", open(&found)),
+        format!("open {:.4}; all open would be {:.2} off", open(&truth), error(&all, &truth)),
+        error(&found, &truth),
+        0.5 * error(&all, &truth),
         sky.again(&name),
     )))
+}
+
+/// A receiver that is not a number, and one that is infinite: all open, and its neighbours as they are without it.
+fn broken(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Vec<Row>, ShadowError> {
+    let width = coefficient_count(order);
+    let spheres: Vec<Sphere> = (0..20).map(|i| sphere(2.0 + 0.1 * f64::from(i), 1.0)).collect();
+    let mut rows = Vec::new();
+    for (kind, value) in
+        [("not a number", f32::NAN), ("infinite", f32::INFINITY), ("minus infinite", f32::NEG_INFINITY)]
+    {
+        let name = format!("a receiver that is {kind}, order {order}");
+        if !wanted(only, &name) {
+            continue;
+        }
+        let among = trial.receivers(order, &[[0.0; 3], [0.0, value, 0.0], [0.0, 0.5, 0.0]], &spheres)?;
+        let alone = trial.receivers(order, &[[0.0; 3], [0.0, 0.5, 0.0]], &spheres)?;
+        let mut expected = alone[..width].to_vec();
+        expected.extend(open_everywhere(order));
+        expected.extend(&alone[width..]);
+        rows.push(row(
+            &name,
+            "the second of three under 20 spheres".to_owned(),
+            format!(
+                "open {:.6}, {:.6}, {:.6}",
+                open(&among),
+                open(&among[width..]),
+                open(&among[2 * width..])
+            ),
+            format!("open {:.6}, 1, {:.6}", open(&alone), open(&alone[width..])),
+            error(&among, &expected),
+            1e-6,
+            again(&name),
+        ));
+    }
+    Ok(rows)
+}
+
+/// Visibility of all.
+fn open_everywhere(order: usize) -> Vec<f64> {
+    let mut all = vec![0.0; coefficient_count(order)];
+    all[0] = (4.0 * std::f64::consts::PI).sqrt();
+    all
 }
 
 /// Everything below the tangent plane of a receiver with a normal.
@@ -127,8 +165,7 @@ fn below(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Option<R
     let spheres: Vec<Sphere> = (0..60).map(place).collect();
     let frame = trial.frame(order, true, Some([0.0, 1.0, 0.0]), &spheres)?;
     let found: Vec<f64> = frame.values.iter().copied().map(f64::from).collect();
-    let mut all = vec![0.0; coefficient_count(order)];
-    all[0] = (4.0 * std::f64::consts::PI).sqrt();
+    let all = open_everywhere(order);
     Ok(Some(row(
         &name,
         "60 spheres that do not reach the tangent plane".to_owned(),
