@@ -110,17 +110,15 @@ mod tests {
         let sound = std::fs::read(&file).unwrap();
         let mut flipped = sound.clone();
         *flipped.last_mut().unwrap() ^= 1;
-        let text = String::from_utf8_lossy(&sound).into_owned();
-        let foreign = text.find("airglow.radiance.tree").map(|at| {
-            let mut bytes = sound.clone();
-            bytes[at..at + 7].copy_from_slice(b"another");
-            bytes
-        });
+        let name = CONTAINER.entry.as_bytes();
+        let place = sound.windows(name.len()).position(|bytes| bytes == name).unwrap();
+        let mut foreign = sound.clone();
+        foreign[place..place + 7].copy_from_slice(b"another");
         for (bytes, reason) in [
             (sound[..sound.len() / 2].to_vec(), "Damaged"),
             (flipped, "Damaged"),
             (b"nothing".to_vec(), "Damaged"),
-            (foreign.unwrap(), "Foreign"),
+            (foreign, "Foreign"),
         ] {
             std::fs::write(&file, &bytes).unwrap();
             let (again, miss) = take(&positions);
