@@ -22,7 +22,7 @@ while [ $# -gt 0 ]; do
 done
 
 say "demo of airglow: build, bake, draw, measure"
-echo "Expect 7 to 12 minutes on two cores the first time, most of it building; about 2 minutes after that."
+echo "Expect 7 to 12 minutes on two cores the first time, most of it building; about 4 minutes after that."
 
 require_toolchain
 packages=(libvulkan1)
@@ -41,8 +41,15 @@ mkdir -p out
 say "the device"
 "$airglow" devices
 say "baking and drawing $scene"
-"$airglow" render "$scene" "${device[@]}" -o out/demo.png --stat out/demo.json
-"$airglow" render "$scene" "${device[@]}" --without relight --split -o out/demo-split.png --quiet > /dev/null
+size=(--size 640x360)
+"$airglow" render "$scene" "${device[@]}" "${size[@]}" --frames 5 -o out/demo.png --stat out/demo.json
+bare=(--without relight --without radiance --without shadow --without normals --without fog)
+"$airglow" render "$scene" "${device[@]}" "${size[@]}" --frames 1 "${bare[@]}" --split=diagonal -o out/demo-split.png --quiet > /dev/null
+say "a film of it: the lamp goes along its rope, the figure walks, the camera follows"
+"$airglow" film "$scene" "${device[@]}" --size 320x180 --frames 12 --step 0.16 --fly 0.4,0.1,1.2 --strip 4 -o out/film --quiet > /dev/null
+if [ -n "$(command -v convert)" ]; then
+    convert -delay 12 -loop 0 out/film/frame-*.png -layers optimize out/film/film.gif
+fi
 street=assets/scenes/street.toml
 say "drawing $street"
 "$airglow" render "$street" "${device[@]}" -o out/street.png --frames 5 --stat out/street.json
@@ -50,10 +57,11 @@ say "drawing $street"
 say "the plan"
 "$airglow" plan "$scene" "${device[@]}" | tee out/plan.txt
 say "measuring error against time"
-"$airglow" report relight --scene "$scene" "${device[@]}" -o out/report --quick
+"$airglow" report relight --scene assets/scenes/cloister.toml "${device[@]}" -o out/report --quick
 
 say "done in $SECONDS s"
-echo "picture          $PWD/out/demo.png (out/demo-split.png: left half without the pass)"
+echo "picture          $PWD/out/demo.png (out/demo-split.png: left of the diagonal without the passes)"
+echo "film             $PWD/out/film (film.gif too, where ImageMagick is)"
 echo "picture          $PWD/out/street.png (out/street-airs.png: in clear air, in depth fog, in fog)"
 echo "timings          $PWD/out/demo.json, $PWD/out/street.json"
 echo "plan             $PWD/out/plan.txt"
