@@ -109,8 +109,8 @@ pub struct Arguments {
     #[cfg(feature = "radiance")]
     #[arg(long, value_name = "PICTURES", value_parser = clap::value_parser!(u32).range(2..=16), conflicts_with_all = ["without", "passes", "reference", "spin"])]
     strip: Option<u32>,
-    /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass.
-    #[arg(long, conflicts_with = "without")]
+    /// Light the vertices by the model's truth, ray-traced on the CPU, instead of the pass: distant light in clear air.
+    #[arg(long, conflicts_with = "split")]
     reference: bool,
     /// Rays for each vertex of the reference.
     #[arg(long, default_value_t = 1024, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(2..))]
