@@ -5,6 +5,8 @@
 mod random;
 
 use airglow_checker::{Kind, Mutation, Trace, check, check_sharing};
+use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, Limits, PassKind, State};
+use ash::vk;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
@@ -126,4 +128,36 @@ fn shared_memory_is_taken_over_in_turn() {
     }
     println!("{MUTATED} graphs: {saving} would save memory by sharing; {handovers} handovers, each needed");
     assert!(saving > 50 && handovers > 100);
+}
+
+/// An image and a buffer that another family has before and after: of this device, of another process, of another device.
+#[test]
+fn whoever_owned_a_resource_is_taken_from_and_given_back_to() {
+    for family in [3, vk::QUEUE_FAMILY_EXTERNAL, vk::QUEUE_FAMILY_FOREIGN_EXT] {
+        let mut graph = Graph::new();
+        let desc = ImageDesc {
+            usage: vk::ImageUsageFlags::SAMPLED,
+            ..ImageDesc::new_2d(4, 4, vk::Format::R32_SFLOAT)
+        };
+        let theirs = |access| State::of(access).on_queue_family(family);
+        let [sampled, kept] = [Access::FragmentSampled, Access::VertexBuffer].map(theirs);
+        let image = graph.import_image("camera", desc, sampled, sampled);
+        let desc = BufferDesc { size: 64, usage: vk::BufferUsageFlags::STORAGE_BUFFER };
+        let buffer = graph.import_buffer("light", desc, kept, kept);
+        let mut pass = graph.pass("measure", PassKind::Compute);
+        pass.read(&image, Access::ComputeSampled);
+        pass.write(buffer, Access::ComputeStorageWrite);
+        pass.record(());
+        let plan = graph.compile(&Limits::default()).unwrap();
+        let text = plan.text();
+        assert!(check(&plan).unwrap().redundant.is_empty(), "{text}");
+        let ends = [plan.acquires(), plan.releases()];
+        assert!(ends.iter().all(|end| (end.buffers.len(), end.images.len()) == (1, 1)), "{text}");
+        let trace = Trace::of(&plan);
+        let families = trace.barriers().filter(|(.., b)| b.src_queue_family != b.dst_queue_family);
+        assert_eq!(families.count(), 4, "{text}");
+        for edit in trace.edits() {
+            assert!(trace.check_edit(edit).is_err(), "{family}: {edit:?} goes unnoticed\n{text}");
+        }
+    }
 }

@@ -260,7 +260,7 @@ typedef uint32_t AirglowFogPreset;
 #endif // __cplusplus
 
 /**
- * What the pass uses; all are images of the host's.
+ * What the pass uses; all are images of the host's, the index is the view.
  */
 enum AirglowFogResource
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -795,6 +795,43 @@ typedef uint32_t AirglowRelightResource;
 #endif // __cplusplus
 
 /**
+ * The way to the exponential.
+ */
+enum AirglowShadowExponential
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * The polynomial of the least degree that is near enough wherever it is asked.
+   */
+  AIRGLOW_SHADOW_EXPONENTIAL_ADAPTIVE = 0,
+  /**
+   * The product series of a degree, of the whole vector.
+   */
+  AIRGLOW_SHADOW_EXPONENTIAL_SERIES = 1,
+  /**
+   * A series by Horner's rule of what is scaled to a norm, then squared.
+   */
+  AIRGLOW_SHADOW_EXPONENTIAL_HORNER = 2,
+  /**
+   * Optimal linear.
+   */
+  AIRGLOW_SHADOW_EXPONENTIAL_OPTIMAL_LINEAR = 3,
+  /**
+   * Optimal linear of what is scaled to a threshold, then squared.
+   */
+  AIRGLOW_SHADOW_EXPONENTIAL_HYBRID = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum AirglowShadowExponential AirglowShadowExponential;
+#else
+typedef uint32_t AirglowShadowExponential;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * What the pass uses; all are buffers of the host's.
  */
 enum AirglowShadowResource
@@ -870,6 +907,11 @@ typedef struct AirglowFog AirglowFog;
 typedef struct AirglowFogBackground AirglowFogBackground;
 
 /**
+ * Counters of one pass, for whichever of its frames; a host that makes none pays nothing. Any thread may use it.
+ */
+typedef struct AirglowHealth AirglowHealth;
+
+/**
  * A normal map and its texture of lobes. Any thread may use it.
  */
 typedef struct AirglowNormalMap AirglowNormalMap;
@@ -915,6 +957,11 @@ typedef struct AirglowShadow AirglowShadow;
  * The vertices of a mesh, put into clusters once. Any thread may use them.
  */
 typedef struct AirglowShadowReceivers AirglowShadowReceivers;
+
+/**
+ * The tree of a set of spheres, with the ratios its nodes count by; it stays while the set moves. Any thread may use it.
+ */
+typedef struct AirglowSphereHierarchy AirglowSphereHierarchy;
 
 /**
  * Triangles that block light, from both sides, beside those of the mesh itself. Elements of arrays never grow.
@@ -1637,6 +1684,78 @@ typedef struct AirglowFogCounts {
 } AirglowFogCounts;
 
 /**
+ * Counts of a frame, in the order in which the function says that made the counters.
+ */
+typedef struct AirglowHealthCounts {
+  /**
+   * The context's frame that was counted.
+   */
+  uint64_t frame;
+  /**
+   * 1: a frame was counted, and the device is done with it. 0: the other fields say nothing.
+   */
+  uint32_t counted;
+  /**
+   * How many counters there are.
+   */
+  uint32_t count;
+  /**
+   * The counts; 0 past the last.
+   */
+  uint32_t counts[8];
+} AirglowHealthCounts;
+
+/**
+ * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
+ */
+typedef struct AirglowBinding {
+  /**
+   * See `AirglowAccess`.
+   */
+  uint32_t resource;
+  /**
+   * See `AirglowAccess`.
+   */
+  uint32_t index;
+  /**
+   * The `VkBuffer`, or 0 for an image.
+   */
+  uint64_t buffer;
+  /**
+   * First byte of the resource in the buffer.
+   */
+  uint64_t offset;
+  /**
+   * Bytes of the whole buffer.
+   */
+  uint64_t size;
+  /**
+   * The `VkImage`, 2D with one sample, or 0 for a buffer.
+   */
+  uint64_t image;
+  /**
+   * `VkFormat` of the image.
+   */
+  uint32_t format;
+  /**
+   * `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
+   */
+  uint32_t usage;
+  /**
+   * Width and height of the image.
+   */
+  uint32_t extent[2];
+  /**
+   * Mips of the image; 0 is 1.
+   */
+  uint32_t mips;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
+} AirglowBinding;
+
+/**
  * How textures of lobes are made. Zero is the default of every field.
  */
 typedef struct AirglowNormalsSettings {
@@ -1699,6 +1818,14 @@ typedef struct AirglowNormalMapInfo {
    * settings, that is copied in one step; whatever else is there is left alone. Null for none.
    */
   const char *cache;
+  /**
+   * 1: green points down; 0: up.
+   */
+  uint32_t green_down;
+  /**
+   * Not used; 0.
+   */
+  uint32_t reserved;
 } AirglowNormalMapInfo;
 
 /**
@@ -1853,56 +1980,6 @@ typedef struct AirglowResourceInfo {
    */
   const char *name;
 } AirglowResourceInfo;
-
-/**
- * A resource of the host's, for one recording: a buffer or an image. Elements of arrays never grow.
- */
-typedef struct AirglowBinding {
-  /**
-   * See `AirglowAccess`.
-   */
-  uint32_t resource;
-  /**
-   * See `AirglowAccess`.
-   */
-  uint32_t index;
-  /**
-   * The `VkBuffer`, or 0 for an image.
-   */
-  uint64_t buffer;
-  /**
-   * First byte of the resource in the buffer.
-   */
-  uint64_t offset;
-  /**
-   * Bytes of the whole buffer.
-   */
-  uint64_t size;
-  /**
-   * The `VkImage`, 2D with one sample, or 0 for a buffer.
-   */
-  uint64_t image;
-  /**
-   * `VkFormat` of the image.
-   */
-  uint32_t format;
-  /**
-   * `VkBufferUsageFlags` or `VkImageUsageFlags` that it was made with.
-   */
-  uint32_t usage;
-  /**
-   * Width and height of the image.
-   */
-  uint32_t extent[2];
-  /**
-   * Mips of the image; 0 is 1.
-   */
-  uint32_t mips;
-  /**
-   * Not used; 0.
-   */
-  uint32_t reserved;
-} AirglowBinding;
 
 /**
  * What the light of near emitters is prepared for. Zero is the default of every field.
@@ -2360,6 +2437,23 @@ typedef struct AirglowShadowSettings {
    * Smallest eigenvalue over the largest before the logarithm, to 0.5. 0 is 0.02.
    */
   double clip;
+  /**
+   * An `AirglowShadowExponential`.
+   */
+  uint32_t exponential;
+  /**
+   * Of a series, 1 to 32.
+   */
+  uint32_t degree;
+  /**
+   * Of a series by Horner's rule the largest norm of what it is given, of the hybrid its threshold; above 0.
+   */
+  double norm;
+  /**
+   * Share of a half space below which a node of a hierarchy stands for what it holds, to 1. 0 is 0.03, below 0 spheres
+   * are taken alone.
+   */
+  double cut;
 } AirglowShadowSettings;
 
 /**
@@ -2375,6 +2469,24 @@ typedef struct AirglowSphere {
    */
   double radius;
 } AirglowSphere;
+
+/**
+ * A set of spheres in a pose. Elements of arrays never grow.
+ */
+typedef struct AirglowSphereSet {
+  /**
+   * Its hierarchy; null for one without.
+   */
+  const struct AirglowSphereHierarchy *hierarchy;
+  /**
+   * Its spheres, in the order in which the hierarchy was made of them.
+   */
+  const struct AirglowSphere *spheres;
+  /**
+   * How many.
+   */
+  size_t sphere_count;
+} AirglowSphereSet;
 
 /**
  * What the pass did in a frame.
@@ -2597,6 +2709,17 @@ AirglowStatus airglow_fog_plan(const struct AirglowFog *fog,
                                struct AirglowError *error);
 
 /**
+ * Makes counters for `airglow_prepared_count`, of frames of this pass: pixels whose surface has a component that is not
+ * finite; others with a negative one; pixels whose depth is not between 0 and 1.
+ *
+ * The caller promises:
+ * `health` may be written.
+ */
+AirglowStatus airglow_fog_health_new(const struct AirglowFog *fog,
+                                     struct AirglowHealth **health,
+                                     struct AirglowError *error);
+
+/**
  * Prepares a view of `width * height` pixels. `*prepared` gets null where the medium is clear: then there is nothing to
  * record, and the surface is the picture.
  *
@@ -2612,6 +2735,22 @@ AirglowStatus airglow_fog_prepare(const struct AirglowFog *fog,
                                   struct AirglowError *error);
 
 /**
+ * Prepares views of `width * height` pixels each as one frame: pipelines and the barriers around it are those of one.
+ * Resources have the place of their view as index. `*prepared` gets null where every medium is clear; a view whose own is
+ * clear lists nothing.
+ *
+ * The caller promises:
+ * `views` points at `view_count` pointers to views, each as with `airglow_fog_prepare`; `prepared` may be written.
+ */
+AirglowStatus airglow_fog_prepare_views(const struct AirglowFog *fog,
+                                        uint32_t width,
+                                        uint32_t height,
+                                        const struct AirglowFogView *const *views,
+                                        size_t view_count,
+                                        struct AirglowPrepared **prepared,
+                                        struct AirglowError *error);
+
+/**
  * Sets camera, medium and lights of a prepared view, which count from the next recording on; lamps that come and go
  * allocate nothing once there were as many. A clear medium is refused: leave the pass out, or prepare anew. On an error
  * the view stays. `counts` may be null.
@@ -2623,6 +2762,71 @@ AirglowStatus airglow_fog_set(const struct AirglowPrepared *prepared,
                               const struct AirglowFogView *view,
                               struct AirglowFogCounts *counts,
                               struct AirglowError *error);
+
+/**
+ * Sets one view of several as `airglow_fog_set` sets the first, by its place among those that were prepared.
+ *
+ * The caller promises:
+ * As `airglow_fog_set`.
+ */
+AirglowStatus airglow_fog_set_view(const struct AirglowPrepared *prepared,
+                                   uint32_t index,
+                                   const struct AirglowFogView *view,
+                                   struct AirglowFogCounts *counts,
+                                   struct AirglowError *error);
+
+/**
+ * Sets the counts to 0, before what is counted of a frame.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`.
+ */
+AirglowStatus airglow_health_clear(const struct AirglowHealth *health,
+                                   uint64_t command_buffer,
+                                   struct AirglowError *error);
+
+/**
+ * Copies the counts for `airglow_health_latest`, after what is counted of a frame, once in it.
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`.
+ */
+AirglowStatus airglow_health_collect(const struct AirglowHealth *health,
+                                     uint64_t command_buffer,
+                                     struct AirglowError *error);
+
+/**
+ * Says the counts of the newest frame that is done, without waiting: one that was collected `frames_in_flight` frames ago
+ * or earlier.
+ *
+ * The caller promises:
+ * `counts` may be written.
+ */
+AirglowStatus airglow_health_latest(const struct AirglowHealth *health,
+                                    struct AirglowHealthCounts *counts,
+                                    struct AirglowError *error);
+
+/**
+ * Drops counters. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again, and the device has finished what was recorded with it.
+ */
+void airglow_health_drop(struct AirglowHealth *health);
+
+/**
+ * Counts what is wrong with what a frame read and wrote, after `airglow_prepared_record` in the same command buffer with
+ * the same bindings, before the host uses them. A map of normals counts while it is built (`airglow_normal_map_count`).
+ *
+ * The caller promises:
+ * As `airglow_prepared_record`.
+ */
+AirglowStatus airglow_prepared_count(const struct AirglowPrepared *prepared,
+                                     const struct AirglowHealth *health,
+                                     uint64_t command_buffer,
+                                     const struct AirglowBinding *bindings,
+                                     size_t binding_count,
+                                     struct AirglowError *error);
 
 /**
  * Adds what the pass asks of a device with these settings.
@@ -2664,6 +2868,41 @@ AirglowStatus airglow_normal_map_new(const struct AirglowNormals *normals,
                                      const struct AirglowNormalMapInfo *info,
                                      struct AirglowNormalMap **map,
                                      struct AirglowError *error);
+
+/**
+ * Makes counters for `airglow_normal_map_count`: lobes that are not finite; lobes that hold no normal, so that fewer would
+ * do.
+ *
+ * The caller promises:
+ * `health` may be written.
+ */
+AirglowStatus airglow_normals_health_new(const struct AirglowNormals *normals,
+                                         struct AirglowHealth **health,
+                                         struct AirglowError *error);
+
+/**
+ * Has the lobes of all levels counted in a step of the build of their own, before its last: to be called before any step
+ * is prepared. A map that comes from a file has nothing to count.
+ *
+ * The caller promises:
+ * Nothing beyond the pointers being valid.
+ */
+AirglowStatus airglow_normal_map_count(const struct AirglowNormalMap *map,
+                                       const struct AirglowHealth *health,
+                                       struct AirglowError *error);
+
+/**
+ * Writes the plan that the library's graph makes of the next steps of a map's build, at most `most`; they do not count as
+ * taken. The format is an `AirglowPlanFormat`.
+ *
+ * The caller promises:
+ * `text` as `AirglowText` says.
+ */
+AirglowStatus airglow_normal_map_plan(const struct AirglowNormalMap *map,
+                                      size_t most,
+                                      uint32_t format,
+                                      struct AirglowText *text,
+                                      struct AirglowError *error);
 
 /**
  * Says how far the build of a map is.
@@ -2847,6 +3086,17 @@ AirglowStatus airglow_radiance_plan(const struct AirglowRadiance *radiance,
                                     uint32_t format,
                                     struct AirglowText *text,
                                     struct AirglowError *error);
+
+/**
+ * Makes counters for `airglow_prepared_count`, of frames of this pass: vertices whose light is not finite; receivers whose
+ * limit of samples kept nodes from being split.
+ *
+ * The caller promises:
+ * `health` may be written.
+ */
+AirglowStatus airglow_radiance_health_new(const struct AirglowRadiance *radiance,
+                                          struct AirglowHealth **health,
+                                          struct AirglowError *error);
 
 /**
  * Prepares the light of a receiver's vertices. `*prepared` gets null where no emitter gives light, or no vertex reflects
@@ -3068,6 +3318,19 @@ AirglowStatus airglow_relight_turn(const struct AirglowPrepared *prepared,
                                    struct AirglowError *error);
 
 /**
+ * Sets what each band of the light of a prepared frame is multiplied with, red, green and blue, from the next recording on:
+ * the zonal filter of a convolution about every direction, such as that of a medium before an environment. All 1 at first.
+ * For light that turns: an environment's, or one vector for all.
+ *
+ * The caller promises:
+ * `factors` has `3 * band_count` values.
+ */
+AirglowStatus airglow_relight_set_filter(const struct AirglowPrepared *prepared,
+                                         const double *factors,
+                                         size_t band_count,
+                                         struct AirglowError *error);
+
+/**
  * Shows (1) or hides (0) an instance of a prepared frame, and says whether its dynamic visibility blocks anything (1) or
  * not (0); it counts from the next recording on. Nothing is recorded for what is away, and the frame stays as it is.
  * Results of a hidden instance are not to be read.
@@ -3225,6 +3488,40 @@ AirglowStatus airglow_shadow_receivers_new(const struct AirglowShadow *shadow,
 void airglow_shadow_receivers_drop(struct AirglowShadowReceivers *receivers);
 
 /**
+ * Makes the hierarchy of a set of spheres as it rests, for the order of the pass. Ratios are sought over points all around:
+ * once for a set, not in a frame.
+ *
+ * The caller promises:
+ * `spheres` has `sphere_count` elements; `hierarchy` may be written.
+ */
+AirglowStatus airglow_sphere_hierarchy_new(const struct AirglowShadow *shadow,
+                                           const struct AirglowSphere *spheres,
+                                           size_t sphere_count,
+                                           struct AirglowSphereHierarchy **hierarchy,
+                                           struct AirglowError *error);
+
+/**
+ * Drops a hierarchy; frames that it was set in keep what it said. Null is nothing.
+ *
+ * The caller promises:
+ * The pointer is not used again.
+ */
+void airglow_sphere_hierarchy_drop(struct AirglowSphereHierarchy *hierarchy);
+
+/**
+ * Sets sets of spheres, with hierarchies and without, in a prepared frame; all else as `airglow_shadow_set` says.
+ *
+ * The caller promises:
+ * `sets` has `set_count` elements, whose spheres are as many as each says; else as `airglow_shadow_set`.
+ */
+AirglowStatus airglow_shadow_set_sets(const struct AirglowPrepared *prepared,
+                                      const struct AirglowSphereSet *sets,
+                                      size_t set_count,
+                                      const double *receiver_from_world,
+                                      uint32_t *blocks,
+                                      struct AirglowError *error);
+
+/**
  * Prepares the visibility of the vertices of one instance; before spheres are set (`airglow_shadow_set`) nothing blocks.
  *
  * The caller promises:
@@ -3250,6 +3547,17 @@ AirglowStatus airglow_shadow_set(const struct AirglowPrepared *prepared,
                                  const double *receiver_from_world,
                                  uint32_t *blocks,
                                  struct AirglowError *error);
+
+/**
+ * Makes counters for `airglow_prepared_count`, of frames of this pass: receivers whose position, and those whose normal, is
+ * not finite; receivers whose visibility is not; those whose result was none that a visibility can have and was clamped.
+ *
+ * The caller promises:
+ * `health` may be written.
+ */
+AirglowStatus airglow_shadow_health_new(const struct AirglowShadow *shadow,
+                                        struct AirglowHealth **health,
+                                        struct AirglowError *error);
 
 /**
  * Sums the records of a frame as the host read them back.

@@ -14,6 +14,7 @@ pub mod conformance;
 pub mod context;
 #[cfg(feature = "fog")]
 pub mod fog;
+pub mod health;
 mod input;
 pub mod needs;
 #[cfg(feature = "normals")]

@@ -111,6 +111,17 @@ pub(crate) trait Frame: Any {
 
     /// Records the commands.
     fn record(&self, recorder: &mut Recorder<'_>, bindings: &mut Self::Bindings) -> Result<(), Failure>;
+
+    /// Records the commands that count what is wrong, into counters of this pass.
+    fn count(
+        &self,
+        _recorder: &mut Recorder<'_>,
+        _counters: &mut dyn Any,
+        _bindings: &mut Self::Bindings,
+    ) -> Result<(), Failure> {
+        let problem = format!("a frame of {} counts nothing after it was recorded", Self::PASS);
+        Err(Failure::argument("prepared", &problem))
+    }
 }
 
 /// A frame with what it was recorded with.
@@ -146,6 +157,15 @@ pub(crate) trait AnyFrame {
         import: &dyn Fn() -> Result<Bound<'a>, Failure>,
     ) -> Result<(), Failure>;
 
+    /// Counts with `given`, imported by `import` unless it was before.
+    fn count<'a>(
+        &self,
+        recorder: &mut Recorder<'_>,
+        counters: &mut dyn Any,
+        given: &[AirglowBinding],
+        import: &dyn Fn() -> Result<Bound<'a>, Failure>,
+    ) -> Result<(), Failure>;
+
     /// Forgets what it was recorded with.
     fn forget(&self);
 }
@@ -168,6 +188,18 @@ impl<F: Frame> AnyFrame for Recorded<F> {
         let mut kept = self.kept();
         let bindings = kept.set(given, || self.frame.bind(&import()?))?;
         self.frame.record(recorder, bindings)
+    }
+
+    fn count<'a>(
+        &self,
+        recorder: &mut Recorder<'_>,
+        counters: &mut dyn Any,
+        given: &[AirglowBinding],
+        import: &dyn Fn() -> Result<Bound<'a>, Failure>,
+    ) -> Result<(), Failure> {
+        let mut kept = self.kept();
+        let bindings = kept.set(given, || self.frame.bind(&import()?))?;
+        self.frame.count(recorder, counters, bindings)
     }
 
     fn forget(&self) {

@@ -140,6 +140,21 @@ impl AirglowPrepared {
         Self { context: Arc::clone(context), uses, scratch: Vec::new(), frame }
     }
 
+    /// The pass whose frame it is.
+    pub(crate) fn pass(&self) -> &'static str {
+        self.frame.pass()
+    }
+
+    pub(crate) fn frame(&self) -> &dyn AnyFrame {
+        &*self.frame
+    }
+
+    /// What the host binds, as the frame takes it.
+    pub(crate) fn bound<'a>(&'a self, given: &'a [AirglowBinding]) -> Result<Bound<'a>, Failure> {
+        // SAFETY: the caller of the exported function vouches for what is bound.
+        unsafe { Bound::new(&self.context, &self.uses, &self.scratch, given) }
+    }
+
     pub(crate) fn context(&self) -> &Context {
         &self.context
     }

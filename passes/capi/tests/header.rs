@@ -7,6 +7,7 @@ use std::fs;
 use airglow_capi::allocator::*;
 use airglow_capi::bake::*;
 use airglow_capi::context::*;
+use airglow_capi::health::*;
 use airglow_capi::needs::*;
 use airglow_capi::physical::*;
 use airglow_capi::status::*;
@@ -33,6 +34,7 @@ fn its_structures_measure_what_rust_s_do() {
         AirglowBakeInfo,
         AirglowBakeStats,
         AirglowError,
+        AirglowHealthCounts,
         AirglowMemoryRequest,
         AirglowNeed,
         AirglowOccluder,
@@ -71,7 +73,7 @@ fn so_do_those_of_radiance() {
 #[cfg(feature = "shadow")]
 #[test]
 fn so_do_those_of_shadow() {
-    use airglow_capi::shadow::{prepared::*, settings::*};
-    let sizes = sizes![AirglowShadowCounts, AirglowShadowSettings, AirglowSphere];
+    use airglow_capi::shadow::{hierarchy::*, prepared::*, settings::*};
+    let sizes = sizes![AirglowShadowCounts, AirglowShadowSettings, AirglowSphere, AirglowSphereSet];
     assert_sizes("shadow_sizes.c", &sizes);
 }

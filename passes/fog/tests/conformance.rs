@@ -6,7 +6,7 @@ use airglow_fog::{
     ACCESSES, BINDINGS, Background, Bindings, Camera, Envelope, Fog, Frame, InputHealth, Light, Lobe,
     LobeTables, Medium, Pass, PhaseKind, Pipelines, Prepared, Preset, Settings, View,
 };
-use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
+use airglow_gpu::ash::vk::{Format, ImageUsageFlags, QUEUE_FAMILY_EXTERNAL};
 use airglow_gpu::{
     AdoptInfo, Context, DeviceMask, Execution, GpuError, Options, Permutations, Record, Recorder,
     Requirements,
@@ -15,7 +15,8 @@ use airglow_graph::{Access, Graph, ImageDesc};
 use airglow_math::World;
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, MakePrepared, Refusal, Room, change, conform, fail_each, prepare, shuffle,
+    Declared, Elsewhere, Given, HostResource, MakePrepared, Refusal, Room, change, conform, fail_each,
+    prepare, shuffle,
 };
 use airglow_tests::device::open;
 use airglow_tests::narrow;
@@ -120,8 +121,12 @@ impl Fogged {
 fn picture(options: &Options) -> Vec<f32> {
     let make = |context: &Context| Fogged::new(context).unwrap();
     let outputs = conform(make, &Fog::requirements(&Settings::default()), options);
+    values(&outputs[0])
+}
+
+fn values(bytes: &[u8]) -> Vec<f32> {
     let value = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    outputs[0].chunks_exact(4).map(value).collect()
+    bytes.chunks_exact(4).map(value).collect()
 }
 
 #[test]
@@ -135,6 +140,14 @@ fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads_and_on_a_lesser_o
     assert!(whole[0] > whole[2], "{:?}", &whole[..4]);
     let mask = DeviceMask { without_optional_features: true, ..DeviceMask::default() };
     assert!(picture(&Options { mask, breadcrumbs: true, ..Options::default() }) == whole);
+}
+
+#[test]
+fn images_that_another_process_has_are_taken_and_given_back() {
+    let family = QUEUE_FAMILY_EXTERNAL;
+    let make = |context: &Context| Elsewhere { room: Fogged::new(context).unwrap(), family };
+    let outputs = conform(make, &Fog::requirements(&Settings::default()), &Options::default());
+    assert!(values(&outputs[0]) == picture(&Options::default()));
 }
 
 #[test]

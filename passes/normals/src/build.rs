@@ -41,7 +41,9 @@ pub struct Progress {
     pub total: u64,
 }
 
-/// The build of one map. Drop it when the frames of its last step are done; the texture stays.
+/// The build of one map. Drop it when the frames of its last step are done; the texture stays. A clone takes steps of its own
+/// in the same buffers.
+#[derive(Clone)]
 pub struct Build {
     pub(crate) stages: Vec<Stage>,
     pub(crate) next: usize,

@@ -1,5 +1,6 @@
 //! A normal map and the texels of level 0 that a texel of a coarser level covers.
 
+use airglow_math::World;
 use glam::DVec3;
 
 use crate::NormalsError;
@@ -83,6 +84,14 @@ impl NormalMap {
         let z = |x: f32, y: f32| (1.0 - x * x - y * y).max(0.0).sqrt();
         let vectors: Vec<_> = texels.iter().map(|&[x, y]| [x, y, z(x, y)]).collect();
         Self::from_vectors(width, height, &vectors)
+    }
+
+    /// The map of a host whose green points as its world says, with green that points up.
+    #[must_use]
+    pub fn of_host(mut self, world: &World) -> Self {
+        let sign = world.green_sign();
+        self.normals.iter_mut().for_each(|normal| normal.y *= sign);
+        self
     }
 
     /// Texels that had no direction.

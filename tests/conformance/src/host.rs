@@ -1,5 +1,6 @@
 //! The host: its memory and its submission, on a device that is given.
 
+use super::elsewhere::check_families;
 use super::roads::{Prepare, by_graph, by_record, fill, read_back};
 use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, check_layouts};
 use crate::shim::{Call, Shim};
@@ -203,6 +204,7 @@ impl<'a> Host<'a> {
                 }
                 Road::Record => by_record(&mut room, recorder, &resources, &given, shim, &mut calls)?,
             }
+            check_families(&calls, &resources, &given, self.stated.queue_family, road)?;
             Ok(read_back(recorder, &resources, &given)?)
         })?;
         Ok((outputs, calls))

@@ -6,6 +6,7 @@
 
 mod changes;
 mod declared;
+mod elsewhere;
 mod faults;
 mod host;
 mod orders;
@@ -24,6 +25,7 @@ use std::error::Error;
 
 pub use changes::{Make, change_on};
 pub use declared::{Declared, Named, copy_mips};
+pub use elsewhere::Elsewhere;
 pub use faults::fail_on;
 pub use host::HostDevice;
 pub use orders::shuffle_on;

@@ -11,5 +11,6 @@ mod health;
 mod histories;
 mod host_allocator;
 mod instruments;
+mod kit;
 mod recorder;
 mod vertex_array;

@@ -86,24 +86,28 @@ fn a_mip_chain_joins_layers_and_moves_one_mip_at_a_time() {
 
 #[test]
 fn another_queue_family_is_acquired_and_given_back_without_a_layout_change() {
-    let mut graph = Graph::new();
-    let desc =
-        ImageDesc { usage: vk::ImageUsageFlags::STORAGE, ..ImageDesc::new_2d(4, 4, vk::Format::R32_SFLOAT) };
-    let hosts = State::of(Access::FragmentSampled).on_queue_family(3);
-    let image = graph.import_image("hdr", desc, hosts, hosts);
-    graph.pass("p", PassKind::Compute).write(image, Access::ComputeStorageReadWrite);
-    let plan = run(&mut graph);
-    let (acquire, release) = (plan.acquires.images[0], plan.releases.images[0]);
-    assert_eq!((acquire.src_queue_family, acquire.dst_queue_family), (3, 0));
-    assert_eq!((release.src_queue_family, release.dst_queue_family), (0, 3));
-    for barrier in [acquire, release] {
-        assert_eq!(
-            (barrier.old_layout, barrier.new_layout),
-            (L::SHADER_READ_ONLY_OPTIMAL, L::SHADER_READ_ONLY_OPTIMAL)
-        );
+    for family in [3, vk::QUEUE_FAMILY_EXTERNAL, vk::QUEUE_FAMILY_FOREIGN_EXT] {
+        let mut graph = Graph::new();
+        let desc = ImageDesc {
+            usage: vk::ImageUsageFlags::STORAGE,
+            ..ImageDesc::new_2d(4, 4, vk::Format::R32_SFLOAT)
+        };
+        let hosts = State::of(Access::FragmentSampled).on_queue_family(family);
+        let image = graph.import_image("hdr", desc, hosts, hosts);
+        graph.pass("p", PassKind::Compute).write(image, Access::ComputeStorageReadWrite);
+        let plan = run(&mut graph);
+        let (acquire, release) = (plan.acquires.images[0], plan.releases.images[0]);
+        assert_eq!((acquire.src_queue_family, acquire.dst_queue_family), (family, 0));
+        assert_eq!((release.src_queue_family, release.dst_queue_family), (0, family));
+        for barrier in [acquire, release] {
+            assert_eq!(
+                (barrier.old_layout, barrier.new_layout),
+                (L::SHADER_READ_ONLY_OPTIMAL, L::SHADER_READ_ONLY_OPTIMAL)
+            );
+        }
+        assert_eq!(plan.steps[0].images[0].new_layout, L::GENERAL);
+        assert_eq!(plan.exits.images[0].src_access, A::SHADER_STORAGE_WRITE);
     }
-    assert_eq!(plan.steps[0].images[0].new_layout, L::GENERAL);
-    assert_eq!(plan.exits.images[0].src_access, A::SHADER_STORAGE_WRITE);
 }
 
 #[test]

@@ -22,7 +22,7 @@ use crate::plan::AirglowPlanFormat;
 use crate::prepared::*;
 use crate::status::AirglowStatus;
 use crate::testing::{call, refused, sizes_refused, text, with_host};
-use crate::through_c::binding;
+use crate::through_c::{binding, uses};
 
 #[test]
 fn rust_and_c_give_the_same_bits_under_validation() {
@@ -77,6 +77,21 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
         let said = refused!(InvalidArgument, airglow_fog_new, made.context, &raw const chosen, &raw mut none);
         assert!(said.contains("give 0 to 1"), "{said}");
         refused!(InvalidArgument, airglow_prepared_record, prepared, 0, null(), 0);
+        let views = [&raw const clear, &raw const good, &raw const good];
+        let several = made.prepare(|to| {
+            crate::conformance::attempt!(airglow_fog_prepare_views, fog, 40, 24, views.as_ptr(), 3, to)
+        });
+        let several = several.unwrap();
+        let seen: Vec<_> = uses(several).unwrap().iter().map(|used| (used.resource, used.index)).collect();
+        assert_eq!(seen, [(0, 1), (1, 1), (2, 1), (0, 2), (1, 2), (2, 2)], "the first is clear");
+        call!(airglow_fog_set_view, several, 2, &raw const good, null_mut());
+        for index in [0, 3] {
+            refused!(InvalidArgument, airglow_fog_set_view, several, index, &raw const good, null_mut());
+        }
+        let none: *const *const AirglowFogView = null();
+        refused!(InvalidArgument, airglow_fog_prepare_views, fog, 40, 24, none, 0, &raw mut other);
+        refused!(InvalidArgument, airglow_fog_prepare_views, fog, 40, 24, none, 1, &raw mut other);
+        refused!(InvalidArgument, airglow_fog_health_new, null(), null_mut());
     });
 }
 

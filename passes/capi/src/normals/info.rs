@@ -2,9 +2,11 @@
 
 use std::ffi::{c_char, c_void};
 
+use airglow_math::World;
+use airglow_math::world::NormalMapGreen;
 use airglow_normals::NormalMap;
 
-use crate::input::{Versioned, array};
+use crate::input::{Versioned, array, one_of};
 use crate::status::Failure;
 
 /// What a texel of a normal map holds.
@@ -40,11 +42,15 @@ pub struct AirglowNormalMapInfo {
     /// Path of a file that `airglow_normal_map_store` wrote, UTF-8: if it holds the texture of this very map with these
     /// settings, that is copied in one step; whatever else is there is left alone. Null for none.
     pub cache: *const c_char,
+    /// 1: green points down; 0: up.
+    pub green_down: u32,
+    /// Not used; 0.
+    pub reserved: u32,
 }
 
 // SAFETY: `#[repr(C)]`, its size first, integers and pointers; fields of 8 bytes are at multiples of 8.
 unsafe impl Versioned for AirglowNormalMapInfo {
-    const OLDEST: usize = size_of::<Self>();
+    const OLDEST: usize = std::mem::offset_of!(Self, green_down);
 }
 
 impl AirglowNormalMapInfo {
@@ -74,7 +80,9 @@ impl AirglowNormalMapInfo {
                 _ => return Err(Failure::argument("info.format", "give an AirglowNormalFormat")),
             }
         };
-        Ok(map?)
+        let normal_map_green =
+            one_of("info.green_down", self.green_down, &[NormalMapGreen::Up, NormalMapGreen::Down])?;
+        Ok(map?.of_host(&World { normal_map_green, ..World::default() }))
     }
 
     /// The texels, whose bytes must be those of width and height.

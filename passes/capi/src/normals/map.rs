@@ -5,16 +5,20 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use airglow_gpu::ash::{vk, vk::Handle};
-use airglow_gpu::{Context, Readback, Recorder};
-use airglow_graph::Access;
+use airglow_gpu::{Context, Imports, Readback, Record, Recorder};
+use airglow_graph::{Access, Graph};
 use airglow_normals::cache::{self, PackedChain};
-use airglow_normals::{Build, LobeTexture, NormalMap, Settings};
+use airglow_normals::{Build, HEALTH, LobeTexture, NormalMap, Settings};
 
 use super::AirglowNormals;
 use super::info::AirglowNormalMapInfo;
+use super::prepared::PASS;
+use crate::health::AirglowHealth;
 use crate::input::{shared, store, string, take, versioned};
 use crate::pass::give;
+use crate::plan::write_plan;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
+use crate::text::AirglowText;
 
 /// A normal map and its texture of lobes. Any thread may use it.
 pub struct AirglowNormalMap {
@@ -110,6 +114,79 @@ pub unsafe extern "C" fn airglow_normal_map_new(
                 let context = Arc::clone(context);
                 Ok(AirglowNormalMap { context, map, settings, cached: kept.is_some(), state })
             })
+        })
+    }
+}
+
+/// Makes counters for `airglow_normal_map_count`: lobes that are not finite; lobes that hold no normal, so that fewer would
+/// do.
+///
+/// # Safety
+/// `health` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_normals_health_new(
+    normals: *const AirglowNormals,
+    health: *mut *mut AirglowHealth,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            give(health, "health", || {
+                AirglowHealth::tallied(&shared(normals, "normals")?.context, PASS, &HEALTH)
+            })
+        })
+    }
+}
+
+/// Has the lobes of all levels counted in a step of the build of their own, before its last: to be called before any step
+/// is prepared. A map that comes from a file has nothing to count.
+///
+/// # Safety
+/// Nothing beyond the pointers being valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_normal_map_count(
+    map: *const AirglowNormalMap,
+    health: *const AirglowHealth,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let (map, tally) = (shared(map, "map")?, shared(health, "health")?.tally(PASS)?);
+            let mut state = map.state();
+            match state.build.as_mut().filter(|build| build.progress().done == 0) {
+                Some(build) => build.count(&tally),
+                None => return Err(Failure::argument("map", "steps of it were prepared: count before")),
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Writes the plan that the library's graph makes of the next steps of a map's build, at most `most`; they do not count as
+/// taken. The format is an `AirglowPlanFormat`.
+///
+/// # Safety
+/// `text` as `AirglowText` says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_normal_map_plan(
+    map: *const AirglowNormalMap,
+    most: usize,
+    format: u32,
+    text: *mut AirglowText,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let map = shared(map, "map")?;
+            let (mut graph, mut imports) = (Graph::<Record>::new(), Imports::new());
+            // A copy of the build takes the steps, and shares its buffers.
+            if let Some(mut build) = map.state().build.clone() {
+                build.add(&mut graph, &mut imports, most);
+            }
+            write_plan(&map.context, graph, format, text)
         })
     }
 }

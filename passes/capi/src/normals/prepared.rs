@@ -21,11 +21,14 @@ pub enum AirglowNormalsResource {
     Own = 1,
 }
 
+/// The pass.
+pub(super) const PASS: &str = "normals";
+
 /// Steps of a build.
 struct NormalsFrame(Vec<Stage>);
 
 impl Frame for NormalsFrame {
-    const PASS: &'static str = "normals";
+    const PASS: &'static str = PASS;
     type Bindings = ();
 
     fn bind(&self, _: &Bound<'_>) -> Result<(), Failure> {

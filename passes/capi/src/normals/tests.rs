@@ -13,8 +13,9 @@ use super::map::*;
 use super::prepared::airglow_normal_map_prepare;
 use super::*;
 use crate::conformance::attempt;
+use crate::health::airglow_health_drop;
 use crate::prepared::*;
-use crate::testing::{call, refused, sizes_refused, with_host};
+use crate::testing::{call, refused, sizes_refused, text, with_host};
 
 #[test]
 fn null_is_refused_everywhere() {
@@ -27,6 +28,9 @@ fn null_is_refused_everywhere() {
     refused!(InvalidArgument, airglow_normal_map_read_back, null(), 0);
     refused!(InvalidArgument, airglow_normal_map_store, null(), null());
     refused!(InvalidArgument, airglow_normal_map_finish, null());
+    refused!(InvalidArgument, airglow_normals_health_new, null(), null_mut());
+    refused!(InvalidArgument, airglow_normal_map_count, null(), null());
+    refused!(InvalidArgument, airglow_normal_map_plan, null(), 1, 0, null_mut());
     // SAFETY: null is nothing.
     unsafe {
         airglow_normals_drop(null_mut());
@@ -58,6 +62,7 @@ fn what_no_map_is_is_refused_and_named() {
         let (good, mut map) = (info(&texels), null_mut());
         for (wrong, word) in [
             (AirglowNormalMapInfo { format: 4, ..good }, "info.format"),
+            (AirglowNormalMapInfo { green_down: 2, ..good }, "info.green_down"),
             (AirglowNormalMapInfo { width: 0, ..good }, "texel_bytes"),
             (AirglowNormalMapInfo { width: u32::MAX, height: u32::MAX, ..good }, "texel_bytes"),
             (AirglowNormalMapInfo { texel_bytes: usize::MAX, ..good }, "texel_bytes"),
@@ -99,8 +104,16 @@ fn a_map_that_was_stored_is_copied_in_one_step() {
         refused!(InvalidArgument, airglow_normal_map_prepare, built, 0, null_mut());
         refused!(InvalidArgument, airglow_normal_map_read_back, built, 1);
         refused!(InvalidArgument, airglow_normal_map_store, built, path.as_ptr());
+        let health = made.hold(airglow_health_drop, |to| attempt!(airglow_normals_health_new, normals, to));
+        let health = health.unwrap();
+        call!(airglow_normal_map_count, built, health);
+        let plan = text(|text| call!(airglow_normal_map_plan, built, usize::MAX, 0, text));
+        assert!(plan.contains(if round == 0 { "normals fit" } else { "copy" }), "{plan}");
+        assert_eq!(plan.contains("normals health"), round == 0, "{plan}");
         let steps = made.prepare(|steps| attempt!(airglow_normal_map_prepare, built, usize::MAX, steps));
         let steps = steps.unwrap();
+        let said = refused!(InvalidArgument, airglow_normal_map_count, built, health);
+        assert!(said.contains("count before"), "{said}");
         frames
             .frame(FrameSemaphores::default(), |commands| {
                 call!(airglow_prepared_record, steps, commands.as_raw(), null(), 0);

@@ -1,15 +1,18 @@
 //! The light of a receiver's vertices as a frame, and the lights that change it.
 
+use std::any::Any;
+
 use airglow_gpu::Recorder;
-use airglow_radiance::{Bindings, Prepared, Resource};
+use airglow_radiance::{Bindings, HEALTH, Prepared, Resource};
 
 use super::AirglowRadiance;
 use super::lights::AirglowRadianceLights;
 use super::receiver::AirglowRadianceReceiver;
 use crate::access::{self, AirglowOrigin, Number, Step, Uses, What};
 use crate::binding::Bound;
+use crate::health::{AirglowHealth, look};
 use crate::input::{shared, versioned};
-use crate::pass::{Frame, give_if};
+use crate::pass::{Frame, give, give_if};
 use crate::prepared::AirglowPrepared;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 
@@ -44,6 +47,36 @@ impl Frame for RadianceFrame {
 
     fn record(&self, recorder: &mut Recorder<'_>, bindings: &mut Bindings) -> Result<(), Failure> {
         Ok(self.0.record(recorder, bindings)?)
+    }
+
+    fn count(
+        &self,
+        recorder: &mut Recorder<'_>,
+        counters: &mut dyn Any,
+        bindings: &mut Bindings,
+    ) -> Result<(), Failure> {
+        look(recorder, counters, &self.0.looks(bindings))
+    }
+}
+
+/// Makes counters for `airglow_prepared_count`, of frames of this pass: vertices whose light is not finite; receivers whose
+/// limit of samples kept nodes from being split.
+///
+/// # Safety
+/// `health` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_radiance_health_new(
+    radiance: *const AirglowRadiance,
+    health: *mut *mut AirglowHealth,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            give(health, "health", || {
+                AirglowHealth::tallied(&shared(radiance, "radiance")?.context, RadianceFrame::PASS, &HEALTH)
+            })
+        })
     }
 }
 

@@ -25,6 +25,7 @@ fn null_is_refused_everywhere() {
     refused!(InvalidArgument, airglow_radiance_prepare, null(), null(), null(), null_mut());
     refused!(InvalidArgument, airglow_radiance_set, null(), null());
     refused!(InvalidArgument, airglow_radiance_forget_samples, null());
+    refused!(InvalidArgument, airglow_radiance_health_new, null(), null_mut());
     refused!(InvalidArgument, airglow_radiance_plan, null(), null(), null(), 0, null_mut());
     // SAFETY: null is nothing.
     unsafe {

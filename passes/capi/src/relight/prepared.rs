@@ -149,6 +149,32 @@ pub unsafe extern "C" fn airglow_relight_turn(
     }
 }
 
+/// Sets what each band of the light of a prepared frame is multiplied with, red, green and blue, from the next recording on:
+/// the zonal filter of a convolution about every direction, such as that of a medium before an environment. All 1 at first.
+/// For light that turns: an environment's, or one vector for all.
+///
+/// # Safety
+/// `factors` has `3 * band_count` values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_relight_set_filter(
+    prepared: *const AirglowPrepared,
+    factors: *const f64,
+    band_count: usize,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            let frame: &RelightFrame = shared(prepared, "prepared")?.of()?;
+            let factors = array(factors.cast::<[f64; 3]>(), band_count, "factors")?;
+            let Some(rotations) = &frame.prepared.rotations else {
+                return Err(misuse("the frame", "it has no light that bands could be multiplied of"));
+            };
+            Ok(rotations.set_filter(factors)?)
+        })
+    }
+}
+
 /// Shows (1) or hides (0) an instance of a prepared frame, and says whether its dynamic visibility blocks anything (1) or
 /// not (0); it counts from the next recording on. Nothing is recorded for what is away, and the frame stays as it is.
 /// Results of a hidden instance are not to be read.

@@ -27,7 +27,7 @@ use crate::through_c::{ThroughC, ends, record};
 
 /// The least that has a kernel: compiling it is most of the time.
 pub(crate) const ORDER: usize = 3;
-const RESOURCES: [Number; 3] = [
+pub(crate) const RESOURCES: [Number; 3] = [
     (AirglowShadowResource::Positions as u32, 0),
     (AirglowShadowResource::Visibility as u32, 0),
     (AirglowShadowResource::Records as u32, 0),

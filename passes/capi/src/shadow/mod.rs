@@ -3,6 +3,7 @@
 
 #[cfg(any(test, feature = "conformance"))]
 pub(crate) mod conformance;
+pub mod hierarchy;
 pub mod prepared;
 pub mod settings;
 #[cfg(test)]

@@ -1,13 +1,16 @@
 //! The visibility of one instance's vertices as a frame, and the spheres that block it.
 
+use std::any::Any;
+
 use airglow_gpu::{Record, Recorder};
 use airglow_graph::{Access, BufferDesc, Graph, State};
-use airglow_shadow::{ACCESSES, Bindings, Blockers, Counts, Receivers, Shadow, Sphere};
+use airglow_shadow::{ACCESSES, Bindings, Blockers, Counts, HEALTH, Receivers, Shadow, Sphere};
 use glam::{DMat4, DVec3};
 
 use super::{AirglowShadow, AirglowShadowReceivers};
 use crate::access::{AirglowOrigin, Number, Resource, Step, Uses, What};
 use crate::binding::Bound;
+use crate::health::{AirglowHealth, look};
 use crate::input::{array, shared, store};
 use crate::pass::{Frame, give};
 use crate::plan::write_plan;
@@ -55,7 +58,7 @@ pub struct AirglowShadowCounts {
 }
 
 /// The visibility of an instance.
-struct ShadowFrame {
+pub(super) struct ShadowFrame {
     shadow: Shadow,
     receivers: Receivers,
     blockers: Blockers,
@@ -84,9 +87,42 @@ impl Frame for ShadowFrame {
     fn record(&self, recorder: &mut Recorder<'_>, bindings: &mut Bindings) -> Result<(), Failure> {
         Ok(self.shadow.record(recorder, &self.receivers, &self.blockers, bindings)?)
     }
+
+    fn count(
+        &self,
+        recorder: &mut Recorder<'_>,
+        counters: &mut dyn Any,
+        bindings: &mut Bindings,
+    ) -> Result<(), Failure> {
+        let Bindings { positions, normals, visibility, records } = &*bindings;
+        let looks = self.receivers.looks(
+            self.shadow.settings().order,
+            positions.clone(),
+            normals.clone(),
+            visibility.clone(),
+            records.clone(),
+        );
+        look(recorder, counters, &looks)
+    }
 }
 
 impl ShadowFrame {
+    /// Writes whether a sphere has a radius, where the caller asks.
+    ///
+    /// # Safety
+    /// `blocks` is null or may be written.
+    pub(super) unsafe fn say_blocks(&self, blocks: *mut u32) -> Result<(), Failure> {
+        if blocks.is_null() {
+            return Ok(());
+        }
+        // SAFETY: the caller's promise is ours.
+        unsafe { store(blocks, "blocks", || Ok(u32::from(!self.blockers.is_empty()))) }
+    }
+
+    pub(super) fn blockers(&self) -> &Blockers {
+        &self.blockers
+    }
+
     /// Bytes of each resource, in the order of [`ACCESSES`]; none of what it does not use.
     fn bytes(&self) -> [Option<u64>; ACCESSES.len()] {
         let (settings, vectors) = (self.shadow.settings(), 12 * u64::from(self.receivers.count()));
@@ -167,26 +203,57 @@ pub unsafe extern "C" fn airglow_shadow_set(
     blocks: *mut u32,
     error: *mut AirglowError,
 ) -> AirglowStatus {
-    let sphere =
-        |given: &AirglowSphere| Sphere { center: DVec3::from_array(given.center), radius: given.radius };
     // SAFETY: the caller vouches for the pointers.
     unsafe {
         edge(error, || {
             let frame: &ShadowFrame = shared(prepared, "prepared")?.of()?;
-            let matrix = match receiver_from_world.is_null() {
-                true => DMat4::IDENTITY,
-                false => DMat4::from_cols_array(shared(receiver_from_world.cast(), "receiver_from_world")?),
-            };
-            let spheres = array(spheres, sphere_count, "spheres")?;
-            if spheres.len() > airglow_shadow::MAX_SPHERES {
-                let problem = format!("{sphere_count} are more than {}", airglow_shadow::MAX_SPHERES);
-                return Err(Failure::argument("spheres", &problem));
-            }
-            frame.blockers.set(&spheres.iter().map(sphere).collect::<Vec<_>>(), matrix)?;
-            match blocks.is_null() {
-                true => Ok(()),
-                false => store(blocks, "blocks", || Ok(u32::from(!frame.blockers.is_empty()))),
-            }
+            let spheres = read(array(spheres, sphere_count, "spheres")?)?;
+            frame.blockers.set(&spheres, matrix(receiver_from_world)?)?;
+            frame.say_blocks(blocks)
+        })
+    }
+}
+
+/// The spheres of the caller; more than a frame takes are refused before they are copied.
+pub(super) fn read(given: &[AirglowSphere]) -> Result<Vec<Sphere>, Failure> {
+    if given.len() > airglow_shadow::MAX_SPHERES {
+        let problem = format!("{} are more than {}", given.len(), airglow_shadow::MAX_SPHERES);
+        return Err(Failure::argument("spheres", &problem));
+    }
+    let sphere =
+        |given: &AirglowSphere| Sphere { center: DVec3::from_array(given.center), radius: given.radius };
+    Ok(given.iter().map(sphere).collect())
+}
+
+/// A column-major matrix of the caller; null is the identity.
+///
+/// # Safety
+/// `given` is null or has 16 values.
+pub(super) unsafe fn matrix(given: *const f64) -> Result<DMat4, Failure> {
+    if given.is_null() {
+        return Ok(DMat4::IDENTITY);
+    }
+    // SAFETY: the caller's promise is ours.
+    Ok(DMat4::from_cols_array(unsafe { shared(given.cast(), "receiver_from_world")? }))
+}
+
+/// Makes counters for `airglow_prepared_count`, of frames of this pass: receivers whose position, and those whose normal, is
+/// not finite; receivers whose visibility is not; those whose result was none that a visibility can have and was clamped.
+///
+/// # Safety
+/// `health` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn airglow_shadow_health_new(
+    shadow: *const AirglowShadow,
+    health: *mut *mut AirglowHealth,
+    error: *mut AirglowError,
+) -> AirglowStatus {
+    // SAFETY: the caller vouches for the pointers.
+    unsafe {
+        edge(error, || {
+            give(health, "health", || {
+                AirglowHealth::tallied(&shared(shadow, "shadow")?.context, ShadowFrame::PASS, &HEALTH)
+            })
         })
     }
 }

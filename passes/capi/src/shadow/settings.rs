@@ -1,6 +1,6 @@
 //! What shadows are prepared for.
 
-use airglow_shadow::Settings;
+use airglow_shadow::{Exponential, Settings};
 
 use crate::input::{Versioned, one_of, or_default};
 use crate::pass;
@@ -25,11 +25,36 @@ pub struct AirglowShadowSettings {
     pub window: f64,
     /// Smallest eigenvalue over the largest before the logarithm, to 0.5. 0 is 0.02.
     pub clip: f64,
+    /// An `AirglowShadowExponential`.
+    pub exponential: u32,
+    /// Of a series, 1 to 32.
+    pub degree: u32,
+    /// Of a series by Horner's rule the largest norm of what it is given, of the hybrid its threshold; above 0.
+    pub norm: f64,
+    /// Share of a half space below which a node of a hierarchy stands for what it holds, to 1. 0 is 0.03, below 0 spheres
+    /// are taken alone.
+    pub cut: f64,
+}
+
+/// The way to the exponential.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AirglowShadowExponential {
+    /// The polynomial of the least degree that is near enough wherever it is asked.
+    Adaptive = 0,
+    /// The product series of a degree, of the whole vector.
+    Series = 1,
+    /// A series by Horner's rule of what is scaled to a norm, then squared.
+    Horner = 2,
+    /// Optimal linear.
+    OptimalLinear = 3,
+    /// Optimal linear of what is scaled to a threshold, then squared.
+    Hybrid = 4,
 }
 
 // SAFETY: `#[repr(C)]`, its size first, numbers; fields of 8 bytes are at multiples of 8.
 unsafe impl Versioned for AirglowShadowSettings {
-    const OLDEST: usize = size_of::<Self>();
+    const OLDEST: usize = std::mem::offset_of!(Self, exponential);
 }
 
 impl pass::Settings for AirglowShadowSettings {
@@ -44,9 +69,24 @@ impl pass::Settings for AirglowShadowSettings {
             reach: or_default(self.reach, default.reach),
             window: self.window,
             clip: if self.clip == 0.0 { default.clip } else { self.clip },
-            ..default
+            cut: or_default(self.cut, default.cut),
+            exponential: self.exponential()?,
         };
         settings.check()?;
         Ok(settings)
+    }
+}
+
+impl AirglowShadowSettings {
+    fn exponential(&self) -> Result<Exponential, Failure> {
+        let (degree, norm) = (self.degree as usize, self.norm);
+        let ways = [
+            Exponential::Adaptive,
+            Exponential::Series { degree },
+            Exponential::Horner { degree, norm },
+            Exponential::OptimalLinear,
+            Exponential::Hybrid { threshold: norm },
+        ];
+        one_of("exponential", self.exponential, &ways)
     }
 }

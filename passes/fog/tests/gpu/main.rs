@@ -13,3 +13,4 @@ mod stability;
 mod surface;
 mod tiles;
 mod visibility;
+mod world;

@@ -4,13 +4,17 @@ use airglow_gpu::ash::vk::{BufferUsageFlags, ImageLayout};
 use airglow_gpu::requirements::Limit;
 use airglow_gpu::{Context, DeviceMask, Image, Options, Permutations, Recorder, Requirements};
 use airglow_graph::{Access, State};
-use airglow_normals::{Build, Envelope, FitSettings, Normals, Pipelines, Resource, Settings, Storage};
+use airglow_normals::{
+    Build, Envelope, FitSettings, NormalMap, Normals, Pipelines, Resource, Settings, Storage,
+};
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
     Declared, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform, copy_mips,
     fail_each, prepare, shuffle, stage,
 };
+use airglow_tests::hosts::hosts;
 use airglow_tests::narrow;
+use glam::DVec3;
 
 use super::common;
 
@@ -111,6 +115,19 @@ fn every_call_that_fails_is_told_and_leaves_nothing() {
     let calls = fail_each(|context| Built::with(context, small), &Normals::requirements(&small));
     println!("{calls} calls failed in turn");
     assert!(calls > 20, "only {calls} calls could fail");
+}
+
+#[test]
+fn three_hosts_get_the_same_map() {
+    let ours = common::weave(16);
+    for world in hosts() {
+        let theirs = |normal: &DVec3| [normal.x, world.green_sign() * normal.y, normal.z].map(|c| c as f32);
+        let vectors: Vec<_> = ours.normals().iter().map(theirs).collect();
+        let map = NormalMap::from_vectors(16, 16, &vectors).unwrap().of_host(&world);
+        let pairs = ours.normals().iter().zip(map.normals());
+        assert!(pairs.clone().all(|(a, b)| (*a - *b).length() < 1e-6), "{world:?}");
+        assert!(pairs.clone().any(|(a, _)| a.y.abs() > 0.1), "green says something");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! This room inside a host with a device of its own, by both roads.
 
-use airglow_gpu::ash::vk::BufferUsageFlags;
+use airglow_gpu::ash::vk::{BufferUsageFlags, QUEUE_FAMILY_EXTERNAL};
 use airglow_gpu::requirements::Limit;
 use airglow_gpu::{Context, DeviceMask, Options, Permutations, Recorder, Requirements};
 use airglow_graph::Access;
@@ -9,8 +9,8 @@ use airglow_shadow::{
 };
 use airglow_tests::compare::assert_close;
 use airglow_tests::conformance::{
-    Declared, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform, fail_each, prepare,
-    shuffle,
+    Declared, Elsewhere, Given, HostResource, MakePrepared, Outputs, Refusal, Room, change, conform,
+    fail_each, prepare, shuffle,
 };
 use airglow_tests::narrow;
 use glam::DMat4;
@@ -108,6 +108,12 @@ fn a_host_with_its_own_device_gets_the_same_bits_by_both_roads_and_on_a_lesser_o
     let limits = vec![(Limit::StorageBufferRange, 32 << 10)];
     let mask = DeviceMask { limits, without_optional_features: true };
     assert!(outputs(&Options { mask, breadcrumbs: true, ..Options::default() }) == whole);
+    let elsewhere = |context: &Context| Elsewhere {
+        room: Shadowed::new(context).unwrap(),
+        family: QUEUE_FAMILY_EXTERNAL,
+    };
+    let taken = conform(elsewhere, &Shadow::requirements(), &Options::default());
+    assert!(taken == whole, "buffers that another process has are taken and given back");
 }
 
 #[test]

@@ -71,6 +71,10 @@ fn a_frame_is_data_before_anything_is_made() {
         call!(airglow_relight_turn, prepared, light.as_ptr(), instances.as_ptr(), 2);
         refused!(InvalidArgument, airglow_relight_turn, prepared, light.as_ptr(), instances.as_ptr(), 1);
         call!(airglow_relight_show, prepared, 1, 0, 0);
+        let half = [[0.5f64; 3]; 4];
+        call!(airglow_relight_set_filter, prepared, half.as_ptr().cast(), 4);
+        let said = refused!(InvalidArgument, airglow_relight_set_filter, prepared, half.as_ptr().cast(), 3);
+        assert!(said.contains("bands"), "{said}");
         call!(airglow_relight_set_lit, prepared, 0);
         refused!(InvalidArgument, airglow_relight_show, prepared, 2, 1, 1);
         refused!(InvalidArgument, airglow_relight_show, prepared, 1, 2, 1);
