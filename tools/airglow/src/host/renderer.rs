@@ -116,7 +116,7 @@ pub const WARM_UP: usize = 2;
 impl<'d> Renderer<'d> {
     /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
     pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
-        Self::with_filter(device, scene, source, picture, Filter::default(), false)
+        Self::with_filter(device, scene, source, picture, Filter::default())
     }
 
     /// The same with normal maps filtered in a stated way.
@@ -160,7 +160,7 @@ impl<'d> Renderer<'d> {
         #[cfg(feature = "normals")]
         maps.attach(scene, source, &mut device_scene);
         #[cfg(feature = "normals")]
-        let (mapped, about_maps) = (maps.fragments(scene, fogged.is_some()), maps.left_out);
+        let (mapped, about_maps) = (maps.fragments(scene), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
         let skins = Skins::new(device, scene, &mut device_scene)?;
@@ -193,7 +193,6 @@ impl<'d> Renderer<'d> {
             unread: unread::of_frame(scene, source).into_iter().chain(about_maps).collect(),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
-            counters,
             linear,
             display,
             over: None,

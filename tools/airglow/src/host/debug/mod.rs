@@ -53,7 +53,7 @@ pub fn views() -> Vec<View> {
 }
 
 /// What views are drawn from.
-pub(self) struct Shown<'a> {
+struct Shown<'a> {
     device: &'a Device<'a>,
     scene: &'a Scene,
     source: &'a Source,
