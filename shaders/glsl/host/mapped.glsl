@@ -194,11 +194,41 @@ struct Seen {
     vec3 diffuse; // share that does not mirror, times the colour
 };
 
+#if AIRGLOW_FOG
+// What the medium scatters onto the surface of a light: each lobe's, as of a normal on its axis. The glow is as wide as the
+// lobes of reflection, and lobes of normals are narrower.
+vec3 mapped_glow(Mapped mapped, Light light, Seen seen, vec3 base, vec2 surface, vec3 position)
+{
+    vec3 view = seen.axes * seen.view;
+    vec3 sum = vec3(0.0);
+#define GLOW(n) light_glow(light, base, surface, seen.alpha, seen.f0, normalize(seen.axes * (n)), view, position)
+    if (mapped.share > 0.0) { sum += mapped.share * GLOW(mapped.normal); }
+    if (mapped.share == 1.0) { return sum; }
+    float rest = 1.0 - mapped.share;
+#if defined(FILTER_LOBES)
+    for (int i = 0; i < MAPPED_LAYERS; ++i) {
+        vec4 lobe = mapped.kept[i];
+        if (lobe.w > 1e-4) { sum += rest * lobe.w * GLOW(lobe.xyz); }
+    }
+#elif defined(FILTER_HARMONICS)
+    sum += rest * GLOW(vec3(-mapped.kept[0].w, -mapped.kept[0].y, mapped.kept[0].z));
+#elif defined(FILTER_LEAN)
+    sum += rest * GLOW(vec3(mapped.kept[0].xy, 1.0));
+#else
+    sum += rest * GLOW(mapped.kept[0].xyz + vec3(0.0, 0.0, 1e-6));
+#endif
+    return sum;
+}
+#endif
+
 // Radiance of the scene's lights; `surface` is metallic and roughness.
-vec3 mapped_lit(Mapped mapped, Seen seen, vec3 position)
+vec3 mapped_lit(Mapped mapped, Seen seen, vec3 base, vec2 surface, vec3 position)
 {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < lights.count.x; ++i) {
+#if AIRGLOW_FOG
+        sum += mapped_glow(mapped, lights.lights[i], seen, base, surface, position);
+#endif
         vec3 towards;
         vec3 irradiance = light_irradiance(lights.lights[i], position, towards);
         vec3 l = towards * seen.axes;
@@ -246,7 +276,7 @@ vec3 mapped_reflected(
 #else
         Mapped mapped = mapped_at(uv, across, along);
 #endif
-        sum += part * mapped_lit(mapped, seen, position);
+        sum += part * mapped_lit(mapped, seen, base, surface, position);
 #if HOST_INCIDENT
         if (mapped.share > 0.0) {
             gather_normal(gathered, part * mapped.share, mapped.normal, seen.alpha, seen.view);

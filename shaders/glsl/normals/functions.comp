@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The functions that hosts include, beyond those of rows.comp, one call a row: for tests.
 
+#include "normals/environment.glsl"
 #include "normals/harmonics.glsl"
 #include "normals/microfacet.glsl"
 
@@ -9,7 +10,7 @@ layout(local_size_x = 64) in;
 
 struct Row {
     vec4 light;       // w: 0 Beckmann, 1 Torrance-Sparrow, 2 zonal, 3 lobe under harmonics, 4 harmonics under a light,
-                      // 5 glossy lobe under harmonics
+                      // 5 glossy lobe under harmonics, 6 lobe of facets under harmonics, 7 its moments about other axes
     vec4 half_vector; // w: alpha, or the sharpness of the reflection
     vec4 view;
     vec4 lobe;
@@ -56,6 +57,17 @@ void main()
         value = lobe.w * NORMALS_HARMONIC_SUM(seen.axis, normals_lambert_bands(seen), COEFFICIENT);
     } else if (kind == 4.0) {
         value = NORMALS_HARMONIC_LAMBERT(light, COEFFICIENT);
+    } else if (kind == 6.0) {
+        NormalsMirrored mirrored = normals_mirrored(normals_lobe(lobe), alpha, rows.values[row].view.xyz);
+        value = lobe.w * NORMALS_HARMONIC_SUM(mirrored.direction, mirrored.bands, COEFFICIENT);
+    } else if (kind == 7.0) {
+        // From axes about the half vector, by way of moments.
+        NormalsLobe seen = normals_lobe(lobe);
+        mat3 axes = mat3(normalize(cross(h, light)), normalize(cross(h, cross(h, light))), h);
+        NormalsMoments moments = NormalsMoments(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+        normals_add_moments(moments, lobe.w * normals_lobe_bands(seen), seen.axis * axes);
+        moments = normals_turned_moments(moments, axes);
+        value = NORMALS_MOMENTS_SUM(moments, NORMALS_COSINE_BANDS, COEFFICIENT);
     } else {
         NormalsGloss gloss = normals_gloss(normals_lobe(lobe), alpha, rows.values[row].view.xyz);
         vec3 bands = normals_gloss_bands(gloss);

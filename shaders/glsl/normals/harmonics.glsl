@@ -118,7 +118,8 @@ NormalsGloss normals_gloss(NormalsLobe lobe, float sharpness, vec3 view)
     float half_vectors = k * sharpness / (k + sharpness);
     gloss.sharpness = max(half_vectors / (4.0 * nv), NORMALS_MIN_CONCENTRATION);
     float both = k + sharpness;
-    float cosine = normals_clamped_cosine(both, 1.0 - 1.0 / max(both, 1.0), dot(lobe.axis, gloss.direction));
+    float r = 1.0 - 1.0 / max(both, 1.0);
+    float cosine = normals_clamped_cosine(r / both, r, dot(lobe.axis, gloss.direction));
     gloss.weight = k / both * TWO_PI * normals_opening(gloss.sharpness) * cosine;
     return gloss;
 }

@@ -26,12 +26,17 @@ float normals_mean_length(float k)
     return (k + square) / (3.0 + 1.5689180 * k + k * k * (0.7379943 + 0.2351182 * k));
 }
 
-// The concentration of a mean vector of length r, within 1.6e-3: k (1 - r) / r goes from 3 to 1 as r goes from 0 to 1, here
-// by a polynomial; `missing` is 1 - r with all its digits.
+// k (1 - r) / r of the concentration k of a mean vector of length r, within 1.6e-3: from 3 to 1 as r goes from 0 to 1, by a
+// polynomial; `missing` is 1 - r with all its digits.
+float normals_concentration_ratio(float r, float missing)
+{
+    return 1.0 + missing * (1.9952537 + r * (-0.9115766 + r * (0.5581401 - 0.7153818 * r)));
+}
+
+// The concentration of a mean vector of length r.
 float normals_concentration(float r, float missing)
 {
-    float bend = 1.9952537 + r * (-0.9115766 + r * (0.5581401 - 0.7153818 * r));
-    return clamp(r * (1.0 + missing * bend) / max(missing, 1e-7), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
+    return clamp(r * normals_concentration_ratio(r, missing) / max(missing, 1e-7), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
 }
 
 NormalsLobe normals_lobe(vec4 stored)
@@ -103,49 +108,77 @@ NormalsProduct normals_times(NormalsLobe lobe, float sharpness, float apart)
     return product;
 }
 
-// The mean of max(0, x) for a normally distributed x, within 4e-4 deviations.
-float normals_rectified(float mean, float deviation)
+// The mean of max(0, x) for a normally distributed x, within 4e-4 deviations; `inverse` is 1 over the deviation.
+float normals_rectified(float mean, float deviation, float inverse)
 {
-    float x = abs(mean) / deviation;
+    float x = abs(mean) * inverse;
     float t = max(1.0 - x / 4.5983302, 0.0);
     t *= t;
     t *= t;
     return max(mean, 0.0) + deviation * t * t * (0.3989423 + 0.1949854 * x);
 }
 
-// Mean of the clamped cosine over a lobe of which concentration, length of the mean and n.light on the axis are given,
-// n.light taken as normally distributed with the lobe's mean and variance.
-float normals_clamped_cosine(float k, float r, float cosine)
+// Mean of the clamped cosine over a lobe of which the variance across, r / k, the length of the mean r and n.light on the
+// axis are given, n.light taken as normally distributed with the lobe's mean and variance.
+float normals_clamped_cosine(float across, float r, float cosine)
 {
-    float across = r / k;
     float along = max(1.0 - r * r - 2.0 * across, 0.0);
-    float variance = along * cosine * cosine + across * max(1.0 - cosine * cosine, 0.0);
-    return normals_rectified(r * cosine, sqrt(max(variance, 1e-14)));
+    float square = cosine * cosine;
+    float variance = max(along * square + across * max(1.0 - square, 0.0), 1e-14);
+    float inverse = inversesqrt(variance);
+    return normals_rectified(r * cosine, variance * inverse, inverse);
 }
 
-float normals_clamped_cosine(NormalsLobe lobe, vec3 light)
+// The same of a lobe that is stored, its weight left out.
+float normals_clamped_cosine(vec4 stored, vec3 light)
 {
-    return normals_clamped_cosine(lobe.concentration, lobe.mean, dot(lobe.axis, light));
+    float squared = max(dot(stored.xyz, stored.xyz), 1e-30);
+    float inverse = inversesqrt(squared);
+    float r = min(squared * inverse / max(stored.w, 1e-30), 1.0);
+    float missing = 1.0 - r;
+    float across = missing / normals_concentration_ratio(r, missing);
+    return normals_clamped_cosine(across, r, inverse * dot(stored.xyz, light));
 }
 
 // Lambert, albedo 1: the mean of (n.l)+ / pi.
 float normals_lambert(vec4 stored, vec3 light)
 {
-    return stored.w * normals_clamped_cosine(normals_lobe(stored), light) / PI;
+    return stored.w * normals_clamped_cosine(stored, light) / PI;
 }
 
-// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis.
+// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis, and
+// normals_times, written with shares of the two concentrations instead of these: `x` is 1 - cosine of the product's axis and
+// the half vector, `width` one over its concentration, `mean` its mean length, as broad as 0.6. A rational function takes the
+// place of log(1 - x) + x, a series that of 2 / (1 + sqrt(1 - u)).
 float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
 {
     float sharpness = exponent + 1.0;
-    NormalsLobe lobe = normals_lobe(stored);
-    NormalsProduct product = normals_times(lobe, sharpness, normals_versine(lobe.axis, half_vector));
-    float x = product.apart;
-    float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * x;
-    float integral = product.factor * exp(product.exponent + height);
-    float cosine = product.own * dot(lobe.axis, light) + product.other * dot(half_vector, light);
-    cosine = normals_clamped_cosine(product.concentration, product.mean, cosine);
-    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * cosine;
+    float squared = max(dot(stored.xyz, stored.xyz), 1e-30);
+    float inverse = inversesqrt(squared);
+    vec3 axis = stored.xyz * inverse;
+    float r = min(squared * inverse / max(stored.w, 1e-30), 1.0);
+    float missing = max(1.0 - r, 1e-7);
+    float scaled = r * normals_concentration_ratio(r, missing); // the lobe's concentration times `missing`
+    float both = 1.0 / (scaled + sharpness * missing);
+    float own = scaled * both;
+    float other = sharpness * missing * both;
+    float apart = normals_versine(axis, half_vector);
+    float u = 2.0 * own * other * apart;
+    float longer = inversesqrt(max(1.0 - u, 1e-4));
+    float x = clamp(1.0 - (1.0 - own * apart) * longer, 0.0, 1.0);
+    float height = x - exponent * x * x * (0.5 - x * (0.095734 + 0.156041 * x)) / (1.0 - 0.929872 * x);
+    float fall = sharpness * own * apart * (1.0 + u * (0.25 + u * (0.125 + 0.09 * u)));
+    float width = missing * both * longer;
+    float broad = min(width, 0.6);
+    broad *= broad;
+    broad *= broad;
+    float integral = (0.5 - 0.15 * broad) * (missing + scaled * (1.0 + r)) * both * longer * exp(height - fall);
+    float mean = max(1.0 - width + 0.6 * broad, 0.0);
+    float cosine = (own * dot(axis, light) + other * dot(half_vector, light)) * longer;
+    float variance = max(width * (mean - cosine * cosine * (1.0 - 2.0 * width)), 1e-14);
+    float over = inversesqrt(variance);
+    float arriving = normals_rectified(mean * cosine, variance * over, over);
+    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * arriving;
 }
 
 #endif

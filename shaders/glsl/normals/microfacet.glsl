@@ -95,7 +95,7 @@ vec4 normals_reflecting_beckmann(NormalsLobe lobe, float alpha, vec3 half_vector
 // The mean of D(n.h) / 4 (n.l)+ by the normals that reflect.
 float normals_unmasked(vec4 reflecting, vec3 light)
 {
-    return 0.25 * reflecting.w * normals_clamped_cosine(normals_lobe(reflecting), light);
+    return 0.25 * reflecting.w * normals_clamped_cosine(reflecting, light);
 }
 
 // The mean of D(n.h) / 4 (n.l)+, D of GGX.
@@ -125,7 +125,7 @@ float normals_torrance_sparrow(vec4 stored, NormalsGgx ggx, float alpha, vec3 li
 {
     vec4 reflecting = normals_reflecting_ggx(normals_lobe(stored), ggx, half_vector);
     vec3 mean = reflecting.xyz / max(reflecting.w, 1e-30);
-    float nl = normals_clamped_cosine(normals_lobe(reflecting), light);
+    float nl = normals_clamped_cosine(reflecting, light);
     return stored.w * reflecting.w * nl * normals_masking(alpha, nl, max(dot(mean, view), 1e-4));
 }
 

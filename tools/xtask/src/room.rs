@@ -70,6 +70,7 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
         let text = room_lines::remove(place, text, name);
         if place == Place::Workspace && spoken_of { room_lines::excuse(&text, name) } else { Some(text) }
     };
+    remove_shared(workspace, name)?;
     let mut edited = room_lines::edit(workspace, remove)?;
     let of_capi = ["passes/capi/src", "passes/capi/tests", "passes/capi/examples"];
     for folder in ["passes", "shaders/glsl", "shaders/spirv"].into_iter().chain(of_capi) {
@@ -84,6 +85,30 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
     run(workspace, "cargo", &["update", "--quiet", "--workspace", "--offline"])?;
     header::run(workspace, false)?;
     portability::run_room(workspace, name)
+}
+
+/// Removes what other rooms' shaders have of this room: the sources that need both, and their modules.
+fn remove_shared(workspace: &Path, name: &str) -> Result<(), Error> {
+    let shaders = workspace.join("shaders");
+    let manifest = shaders.join("glsl/manifest.toml");
+    if !manifest.is_file() {
+        return Ok(());
+    }
+    let text = fs::read_to_string(&manifest).map_err(|source| Error::io(&manifest, source))?;
+    for (file, entry) in room_lines::shared_shaders(&text, name) {
+        let source = shaders.join("glsl").join(&file);
+        let folder = shaders.join("spirv").join(file.split('/').next().unwrap_or_default());
+        let modules = fs::read_dir(&folder).map_err(|source| Error::io(&folder, source))?;
+        let of_entry = |path: &std::path::PathBuf| {
+            let found = path.file_name().and_then(|found| found.to_str()).unwrap_or_default();
+            found.strip_prefix(&entry).is_some_and(|rest| rest.starts_with('.'))
+        };
+        let modules = modules.filter_map(|module| Some(module.ok()?.path())).filter(of_entry);
+        for gone in modules.chain([source]).filter(|path| path.exists()) {
+            fs::remove_file(&gone).map_err(|source| Error::io(&gone, source))?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a name that cannot be, or already is, a room's.

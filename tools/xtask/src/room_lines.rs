@@ -125,13 +125,28 @@ pub fn remove(place: Place, text: &str, name: &str) -> String {
         Place::Shaders => {
             // Entries are paragraphs.
             let file = format!("file = \"{name}/");
-            let kept = text
-                .trim_end()
-                .split("\n\n")
-                .filter(|entry| !entry.lines().any(|line| line.starts_with(&file)));
+            let is_shared = format!("AIRGLOW_{} = true", name.to_uppercase());
+            let gone = |line: &str| line.starts_with(&file) || line == is_shared;
+            let kept = text.trim_end().split("\n\n").filter(|entry| !entry.lines().any(gone));
             kept.collect::<Vec<_>>().join("\n\n") + "\n"
         }
     }
+}
+
+/// Files of other rooms' shaders that need room `name` too: the file below `shaders/glsl` and how its modules are named.
+pub fn shared_shaders(manifest: &str, name: &str) -> Vec<(String, String)> {
+    let is_shared = format!("AIRGLOW_{} = true", name.to_uppercase());
+    let shared = manifest.split("\n\n").filter(|entry| entry.lines().any(|line| line == is_shared));
+    let value = |entry: &str, key: &str| {
+        let line = entry.lines().find_map(|line| line.strip_prefix(&format!("{key} = \"")))?;
+        Some(line.trim_end_matches('"').to_owned())
+    };
+    let named = |entry: &str| {
+        let file = value(entry, "file")?;
+        let stem = file.rsplit('/').next()?.split('.').next()?.to_owned();
+        Some((file, value(entry, "name").unwrap_or(stem)))
+    };
+    shared.filter_map(named).collect()
 }
 
 /// Whether the command has code behind a feature of that name.
@@ -230,6 +245,10 @@ mod tests {
         let text =
             "# All.\n\n# Fog.\n[[entry]]\nfile = \"fog/a.comp\"\n\n[[entry]]\nfile = \"foggy/a.comp\"\n";
         assert_eq!(remove(Place::Shaders, text, "fog"), "# All.\n\n[[entry]]\nfile = \"foggy/a.comp\"\n");
+        let text = "[[entry]]\nfile = \"rain/wet.frag\"\nname = \"drops\"\n[entry.define]\nAIRGLOW_FOG = true\n";
+        assert_eq!(remove(Place::Shaders, text, "fog"), "\n");
+        assert_eq!(shared_shaders(text, "fog"), [("rain/wet.frag".to_owned(), "drops".to_owned())]);
+        assert!(shared_shaders(text, "rain").is_empty());
         let text = "airglow-fog = 1\nairglow-foggy = 2\n    \"passes/fog\",\n    \"passes/fog/c\",\n    \"passes/foggy\",\n";
         assert_eq!(remove(Place::Workspace, text, "fog"), "airglow-foggy = 2\n    \"passes/foggy\",\n");
     }

@@ -93,7 +93,11 @@ fn cases(concentration: f64, width: f64, random: &mut Random) -> Vec<Case> {
 
 /// The mean of a function of the normal over a lobe, by equal shares of it.
 fn mean(lobe: &Lobe, value: impl Fn(DVec3) -> f64) -> f64 {
-    const SIDE: usize = 160;
+    shares::<160>(lobe, value)
+}
+
+/// The same by so many shares to either side.
+fn shares<const SIDE: usize>(lobe: &Lobe, value: impl Fn(DVec3) -> f64) -> f64 {
     let k = lobe.concentration;
     let across = lobe.axis.any_orthonormal_vector();
     let up = lobe.axis.cross(across);
@@ -274,6 +278,60 @@ fn glossy_lobes_under_harmonics() {
         println!("concentration {concentration}, exponent {exponent}: {:.1} %", 100.0 * found);
         assert!(found < bound, "concentration {concentration}, exponent {exponent}: {found}");
     }
+}
+
+/// Facets of a lobe under light from all around, against every normal and every direction that it mirrors; and a matt lobe by
+/// its moments about other axes.
+#[test]
+fn lobes_of_facets_under_harmonics() {
+    const SHARES: usize = 20;
+    let mut random = Random(9);
+    for (alpha, concentration, bound) in
+        [(0.1, 1e5, 0.04), (0.3, 1e5, 0.05), (0.6, 1e5, 0.05), (0.3, 100.0, 0.08), (0.3, 20.0, 0.15)]
+    {
+        let (mut rows, mut truths, mut turned, mut matt) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let seen = cases(concentration, 0.3, &mut random);
+        for case in seen.into_iter().filter(|case| case.lobe.axis.dot(case.view) > 0.05).take(16) {
+            let light: Vec<f64> = (0..9).map(|i| if i == 0 { 3.0 } else { random.bell() }).collect();
+            let arriving = |d: DVec3| basis(d).iter().zip(&light).map(|(a, b)| a * b).sum::<f64>();
+            truths.push(shares::<SHARES>(&case.lobe, |n| mirrored(n, case.view, alpha, arriving)));
+            rows.push(with_coefficients(row(6.0, alpha, &case), &light));
+            turned.push(with_coefficients(row(7.0, alpha, &case), &light));
+            matt.push(with_coefficients(row(3.0, alpha, &case), &light));
+        }
+        let found = error(&rows, &truths);
+        let by_moments = error(&turned, &evaluate(&matt));
+        println!(
+            "alpha {alpha}, concentration {concentration}: {:.1} %, turned {by_moments:.0e}",
+            100.0 * found
+        );
+        assert!(found < bound, "alpha {alpha}, concentration {concentration}: {found}");
+        assert!(by_moments < 1e-5, "{by_moments}");
+    }
+}
+
+/// What facets about one normal mirror towards a view of light from all around, by equal shares of the facets.
+fn mirrored(normal: DVec3, view: DVec3, alpha: f64, arriving: impl Fn(DVec3) -> f64) -> f64 {
+    const SIDE: usize = 24;
+    let (a, nv) = (alpha * alpha, normal.dot(view));
+    if nv <= 0.0 {
+        return 0.0;
+    }
+    let (across, bent) = (normal.any_orthonormal_vector(), |x: f64| (x * x * (1.0 - a) + a).sqrt());
+    let share = |i: usize| (i as f64 + 0.5) / SIDE as f64;
+    let mut sum = 0.0;
+    for i in 0..SIDE * SIDE {
+        let u = share(i / SIDE);
+        let cosine = ((1.0 - u) / (1.0 + (a - 1.0) * u)).sqrt();
+        let (y, x) = (TAU * share(i % SIDE)).sin_cos();
+        let half = (1.0 - cosine * cosine).sqrt() * (x * across + y * normal.cross(across)) + cosine * normal;
+        let (vh, light) = (view.dot(half), 2.0 * view.dot(half) * half - view);
+        let nl = normal.dot(light);
+        if vh > 0.0 && nl > 0.0 {
+            sum += 2.0 * nl / (nl * bent(nv) + nv * bent(nl)) * vh / cosine * arriving(light);
+        }
+    }
+    sum / (SIDE * SIDE) as f64
 }
 
 #[test]

@@ -31,8 +31,8 @@ pub struct Pipelines {
     ambient: GraphicsPipeline,
     /// The same two in fog.
     fogged: Option<[GraphicsPipeline; 2]>,
-    /// The same two for surfaces with normal maps, by how they are looked up.
-    mapped: BTreeMap<Look, MappedPipelines>,
+    /// The same for surfaces with normal maps, by how they are looked up and whether in fog.
+    mapped: BTreeMap<(Look, bool), MappedPipelines>,
     /// Behind the surfaces.
     pub sky: SkyPipelines,
     develop: ComputePipeline,
@@ -161,12 +161,13 @@ impl Pipelines {
         let [lit, ambient] = both(plain, &fragment, bindings)?;
         let in_fog = |fragment| both(plain, fragment, &DRAW_BINDINGS);
         let with_map = |fragments: &MappedFragments| {
-            let [lit, ambient] = both(Inputs::Mapped, &fragments.plain, &MAPPED_BINDINGS)?;
+            let bindings = &MAPPED_BINDINGS[..if fragments.fogged { 9 } else { 8 }];
+            let [lit, ambient] = both(Inputs::Mapped, &fragments.plain, bindings)?;
             let incident = fragments.incident.as_ref().map(|(bytes, fragment)| {
-                scene_pipeline(context, hdr, true, Inputs::Incident(*bytes), fragment, &MAPPED_BINDINGS)
+                scene_pipeline(context, hdr, true, Inputs::Incident(*bytes), fragment, bindings)
             });
             Ok::<_, GpuError>((
-                fragments.look,
+                (fragments.look, fragments.fogged),
                 MappedPipelines { lit, ambient, incident: incident.transpose()? },
             ))
         };
@@ -247,13 +248,14 @@ impl Pipelines {
             if let Some(lights) = &lights {
                 bound.push(Binding::uniform(3, &recorder.upload(&[*lights.constants])?));
             }
-            // Normal maps are lit through the medium, but not by its glow.
             let mut of_maps = bound.clone();
             if lights.is_none() && !mapped.is_empty() {
                 of_maps.push(Binding::uniform(3, &recorder.upload(&[LightsConstants::NONE])?));
             }
             if let Some(lobes) = &lobes {
-                bound.push(Binding::storage(4, resources.buffer(lobes)?));
+                let tables = Binding::storage(4, resources.buffer(lobes)?);
+                bound.push(tables.clone());
+                of_maps.push(tables);
             }
             #[cfg(feature = "fog")]
             if let Some(complete) = &complete {
@@ -264,7 +266,10 @@ impl Pipelines {
             for (instance, draw) in scene.draws.iter().enumerate() {
                 let colours = colours.as_ref().and_then(|light| light.colours.of(instance));
                 let incident = incident.as_ref().and_then(|array| array.of(instance));
-                let map = draw.mapped.as_ref().and_then(|map| Some((map, mapped.get(&map.look)?)));
+                let map = draw
+                    .mapped
+                    .as_ref()
+                    .and_then(|map| Some((map, mapped.get(&(map.look, lobes.is_some()))?)));
                 let Some((map, pipelines)) = map else {
                     let normals = lights.is_some();
                     record_draw(
@@ -387,9 +392,9 @@ fn record_draw(
     if let (Some(tangents), Some(_)) = (&draw.mesh.tangents, map) {
         recorder.bind_vertex_buffer(next + 1, tangents)?;
     }
-    recorder.bind_index_buffer(&draw.mesh.indices)?;
     if let Some((incident, offset, size)) = incident {
         recorder.bind_vertex_buffer(next + 2, resources.buffer(&incident)?.slice(offset, size)?)?;
     }
+    recorder.bind_index_buffer(&draw.mesh.indices)?;
     recorder.draw_indexed(0..draw.mesh.index_count, 0, 0..1)
 }

@@ -12,7 +12,7 @@ use airglow_math::Preset;
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
 use super::device::Device;
-use super::filter::{Filter, MappedFragments};
+use super::filter::{Filter, MappedFragments, Under};
 use super::lighting::Source;
 use super::scene::{DeviceScene, Look, Mapped};
 use super::{incident, scene, shaders, upload};
@@ -97,16 +97,16 @@ impl MappedMaterials {
         }
     }
 
-    /// The fragment stages that draw them, each by how it looks them up.
-    pub fn fragments(&self, scene: &Scene) -> Vec<MappedFragments> {
+    /// The fragment stages that draw them, each by how it looks them up; those of fog, too, where lights shine into a medium.
+    pub fn fragments(&self, scene: &Scene, in_fog: bool) -> Vec<MappedFragments> {
         let looks: BTreeSet<Look> = self.materials.iter().flatten().map(|mapped| mapped.look).collect();
-        let fragments = |look| MappedFragments {
-            look,
-            plain: shaders::mapped_fragment(self.filter, look),
-            incident: incident::is_drawn(scene)
-                .then(|| (incident::vertex_bytes(scene), shaders::incident_fragment(self.filter, look))),
+        let of = |look, fogged| {
+            let fragment = |incident| shaders::mapped_fragment(self.filter, look, Under { fogged, incident });
+            let incident = incident::is_drawn(scene).then(|| (incident::vertex_bytes(scene), fragment(true)));
+            MappedFragments { look, fogged, plain: fragment(false), incident }
         };
-        looks.into_iter().map(fragments).collect()
+        let airs = if in_fog { &[false, true][..] } else { &[false] };
+        looks.into_iter().flat_map(|look| airs.iter().map(move |fogged| of(look, *fogged))).collect()
     }
 
     fn read(&mut self, device: &Device<'_>, scene: &Scene, material: &Material) -> Outcome<Option<Mapped>> {

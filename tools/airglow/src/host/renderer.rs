@@ -160,7 +160,7 @@ impl<'d> Renderer<'d> {
         #[cfg(feature = "normals")]
         maps.attach(scene, source, &mut device_scene);
         #[cfg(feature = "normals")]
-        let (mapped, about_maps) = (maps.fragments(scene), maps.left_out);
+        let (mapped, about_maps) = (maps.fragments(scene, fogged.is_some()), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
         let skins = Skins::new(device, scene, &mut device_scene)?;

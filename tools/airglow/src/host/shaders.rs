@@ -1,7 +1,7 @@
 //! The demo host's own SPIR-V, as `cargo run -p xtask -- shaders` makes it.
 
 #[cfg(feature = "normals")]
-use super::filter::Filter;
+use super::filter::{Filter, Under};
 #[cfg(feature = "normals")]
 use super::scene::Look;
 
@@ -10,7 +10,7 @@ macro_rules! module {
     ($name:literal) => {
         module!("host/", $name)
     };
-    ($room:literal, $name:literal) => {
+    ($room:literal, $name:expr) => {
         bytemuck::pod_collect_to_vec::<u8, u32>(include_bytes!(concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../../shaders/spirv/",
@@ -36,51 +36,50 @@ pub fn incident_vertex() -> Vec<u32> {
     module!("scene_vertex.AIRGLOW_RELIGHT.HOST_INCIDENT.HOST_LIGHTS.HOST_TANGENTS")
 }
 
-/// The fragment stage of the forward draw of surfaces with normal maps that light from all around reaches.
+/// The module of a fragment stage of surfaces with normal maps: in clear air or in fog, under the scene's lights or also
+/// under light from all around.
 #[cfg(feature = "normals")]
-pub fn incident_fragment(filter: Filter, look: Look) -> Vec<u32> {
-    match (filter, look) {
-        (_, Look::Harmonics) => module!("normals/", "scene.harmonics.HOST_INCIDENT"),
-        (Filter::Lobes, Look::Quarters) => module!("normals/", "scene_parts.HOST_INCIDENT"),
-        (Filter::Lobes, Look::Layers(1)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS1"),
-        (Filter::Lobes, Look::Layers(2)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS2"),
-        (Filter::Lobes, Look::Layers(4)) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS4"),
-        (Filter::Lobes, _) => module!("normals/", "scene.lobes.HOST_INCIDENT.MAPPED_LAYERS6"),
-        (Filter::Octahedral, Look::Layers(1)) => {
-            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS1")
+macro_rules! mapped {
+    ($under:expr, $name:literal, $filter:literal, $layers:literal) => {
+        match $under {
+            Under { fogged: false, incident: false } => {
+                module!("normals/", concat!("scene", $name, $filter, $layers))
+            }
+            Under { fogged: false, incident: true } => {
+                module!("normals/", concat!("scene", $name, $filter, ".HOST_INCIDENT", $layers))
+            }
+            #[cfg(feature = "fog")]
+            Under { fogged: true, incident: false } => {
+                module!("fog/", concat!("mapped", $name, $filter, $layers))
+            }
+            #[cfg(feature = "fog")]
+            Under { fogged: true, incident: true } => {
+                module!("fog/", concat!("mapped", $name, $filter, ".HOST_INCIDENT", $layers))
+            }
+            #[cfg(not(feature = "fog"))]
+            Under { fogged: true, .. } => Vec::new(),
         }
-        (Filter::Octahedral, Look::Layers(2)) => {
-            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS2")
-        }
-        (Filter::Octahedral, Look::Layers(6)) => {
-            module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS6")
-        }
-        (Filter::Octahedral, _) => module!("normals/", "scene_octahedral.HOST_INCIDENT.MAPPED_LAYERS4"),
-        (Filter::Toksvig, _) => module!("normals/", "scene.toksvig.HOST_INCIDENT"),
-        (Filter::Lean, _) => module!("normals/", "scene.lean.HOST_INCIDENT"),
-        (Filter::Mip | Filter::Harmonics, _) => module!("normals/", "scene.mip.HOST_INCIDENT"),
-        (Filter::Texels, _) => module!("normals/", "scene.texels.HOST_INCIDENT"),
-    }
+    };
 }
 
 /// The fragment stage of the forward draw of surfaces with normal maps.
 #[cfg(feature = "normals")]
-pub fn mapped_fragment(filter: Filter, look: Look) -> Vec<u32> {
+pub fn mapped_fragment(filter: Filter, look: Look, under: Under) -> Vec<u32> {
     match (filter, look) {
-        (_, Look::Harmonics) => module!("normals/", "scene.harmonics"),
-        (Filter::Lobes, Look::Quarters) => module!("normals/", "scene_parts"),
-        (Filter::Lobes, Look::Layers(1)) => module!("normals/", "scene.lobes.MAPPED_LAYERS1"),
-        (Filter::Lobes, Look::Layers(2)) => module!("normals/", "scene.lobes.MAPPED_LAYERS2"),
-        (Filter::Lobes, Look::Layers(4)) => module!("normals/", "scene.lobes.MAPPED_LAYERS4"),
-        (Filter::Lobes, _) => module!("normals/", "scene.lobes.MAPPED_LAYERS6"),
-        (Filter::Octahedral, Look::Layers(1)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS1"),
-        (Filter::Octahedral, Look::Layers(2)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS2"),
-        (Filter::Octahedral, Look::Layers(6)) => module!("normals/", "scene_octahedral.MAPPED_LAYERS6"),
-        (Filter::Octahedral, _) => module!("normals/", "scene_octahedral.MAPPED_LAYERS4"),
-        (Filter::Toksvig, _) => module!("normals/", "scene.toksvig"),
-        (Filter::Lean, _) => module!("normals/", "scene.lean"),
-        (Filter::Mip | Filter::Harmonics, _) => module!("normals/", "scene.mip"),
-        (Filter::Texels, _) => module!("normals/", "scene.texels"),
+        (_, Look::Harmonics) => mapped!(under, "", ".harmonics", ""),
+        (Filter::Lobes, Look::Quarters) => mapped!(under, "_parts", "", ""),
+        (Filter::Lobes, Look::Layers(1)) => mapped!(under, "", ".lobes", ".MAPPED_LAYERS1"),
+        (Filter::Lobes, Look::Layers(2)) => mapped!(under, "", ".lobes", ".MAPPED_LAYERS2"),
+        (Filter::Lobes, Look::Layers(4)) => mapped!(under, "", ".lobes", ".MAPPED_LAYERS4"),
+        (Filter::Lobes, _) => mapped!(under, "", ".lobes", ".MAPPED_LAYERS6"),
+        (Filter::Octahedral, Look::Layers(1)) => mapped!(under, "_octahedral", "", ".MAPPED_LAYERS1"),
+        (Filter::Octahedral, Look::Layers(2)) => mapped!(under, "_octahedral", "", ".MAPPED_LAYERS2"),
+        (Filter::Octahedral, Look::Layers(6)) => mapped!(under, "_octahedral", "", ".MAPPED_LAYERS6"),
+        (Filter::Octahedral, _) => mapped!(under, "_octahedral", "", ".MAPPED_LAYERS4"),
+        (Filter::Toksvig, _) => mapped!(under, "", ".toksvig", ""),
+        (Filter::Lean, _) => mapped!(under, "", ".lean", ""),
+        (Filter::Mip | Filter::Harmonics, _) => mapped!(under, "", ".mip", ""),
+        (Filter::Texels, _) => mapped!(under, "", ".texels", ""),
     }
 }
 
