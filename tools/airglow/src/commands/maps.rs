@@ -123,7 +123,7 @@ fn draw(
     arguments: &Arguments,
     output: &Output,
 ) -> Outcome<Row> {
-    let mut renderer = Renderer::with_filter(device, scene, source, arguments.size, filter)?;
+    let mut renderer = Renderer::with_filter(device, scene, source, arguments.size, filter, false)?;
     let truth = filter == Filter::Texels;
     let settings = Settings {
         size: arguments.size,
@@ -134,6 +134,7 @@ fn draw(
         spin: 0.0,
         without_shadow: false,
         count_shadow: false,
+        share_transients: false,
         time: 0.0,
         step: 0.0,
         without_relight: false,

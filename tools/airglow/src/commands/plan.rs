@@ -130,6 +130,7 @@ fn frame(arguments: &Arguments) -> Settings {
         spin: 0.0,
         without_shadow: arguments.left_out.has(PassName::Shadow),
         count_shadow: false,
+        share_transients: false,
         time: arguments.scene.time,
         step: 0.0,
         without_relight: arguments.left_out.has(PassName::Relight),

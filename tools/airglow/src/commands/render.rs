@@ -121,14 +121,17 @@ pub struct Arguments {
     /// Have the device count what each pass makes it do, too: vertices, primitives, invocations of shaders.
     #[arg(long)]
     pipeline_statistics: bool,
-    /// Have the passes count what is wrong with their inputs, too: texels of the environment that are not finite, and
-    /// negative ones; pixels that fog cannot use.
+    /// Have the passes count what is wrong with their inputs, too, and limits that they hit: texels of the environment that
+    /// are not finite, and negative ones; pixels that fog cannot use; light, visibility and lobes that are not finite.
     #[arg(long)]
     health: bool,
     /// Draw what a pass holds or decides, in false colours with a legend, instead of the picture; an .exr gets the numbers.
     /// `list` names all views.
     #[arg(long, value_name = "VIEW", conflicts_with_all = ["split", "views", "passes", "reference", "stat", "trace"])]
     debug: Option<String>,
+    /// Have what a frame makes for itself hand memory on: the same picture from fewer bytes, which --stat counts.
+    #[arg(long)]
+    share_transients: bool,
     /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
     #[arg(long, value_name = "FILE.json")]
     trace: Option<PathBuf>,
@@ -168,12 +171,11 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
         let mut settings = settings(arguments);
         let size = settings.picture_size();
-        let mut renderer = Renderer::with_filter(device, &scene, &source, size, arguments.maps)?;
-        #[cfg(feature = "fog")]
+        let (maps, count) = (arguments.maps, arguments.health);
+        let mut renderer = Renderer::with_filter(device, &scene, &source, size, maps, count)?;
         if arguments.health {
             renderer.count_health()?;
         }
-        renderer.health().into_iter().try_for_each(|health| health::clear(device, health))?;
         settings.exposure = renderer.exposure(arguments.exposure, scene.exposure, &settings)?;
         let statistics = arguments.pipeline_statistics;
         let mut picture = arguments.picture(&mut renderer, &mut settings)?;
@@ -231,6 +233,7 @@ fn settings(arguments: &Arguments) -> Settings {
         count_shadow: false,
         time: arguments.scene.time,
         step: arguments.step,
+        share_transients: arguments.share_transients,
         without_relight: arguments.leaves_out(PassName::Relight),
         air: Air::with_fog(!arguments.leaves_out(PassName::Fog)),
         window: None,

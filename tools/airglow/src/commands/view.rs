@@ -109,6 +109,7 @@ fn settings(arguments: &Arguments) -> Settings {
         spin: 0.0,
         without_shadow: false,
         count_shadow: false,
+        share_transients: false,
         time: arguments.scene.time,
         step: 0.0,
         without_relight: false,

@@ -6,6 +6,8 @@ use airglow::relight::{Environment, Frame, Instance, Light, Rotations};
 use airglow_gpu::{Imports, Record, surface};
 use airglow_graph::{Access, Buffer, Graph, Handle, Image};
 
+#[cfg(any(feature = "radiance", feature = "shadow"))]
+use super::counted;
 use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexArray, VertexLight};
 #[cfg(feature = "fog")]
 use super::fog;
@@ -70,7 +72,15 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     // What moves is posed, and hides some of the light from every vertex.
     let posed = renderer.skins.as_ref().map_or(Vec::new(), |skins| skins.add(&mut graph, &mut imports));
     #[cfg(feature = "shadow")]
-    let shadowed = shadow(renderer, settings, &mut graph, &mut imports, &posed);
+    let mut shadowed = shadow(renderer, settings, &mut graph, &mut imports, &posed);
+    #[cfg(feature = "shadow")]
+    counted::look(
+        renderer.counters.shadow.as_ref(),
+        &mut graph,
+        &mut imports,
+        "shadow health",
+        std::mem::take(&mut shadowed.looks),
+    );
 
     // It becomes the light that leaves each vertex, once for all views: by the pass, or from an array that the host
     // brings.
@@ -110,6 +120,13 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
                 // Near emitters first make the light of each vertex, the environment's with it.
                 let arrival = Arrival { turn: settings.turn, filter: filter.as_deref() };
                 let sampled = emitters.add(&mut graph, &mut imports, arrival)?;
+                counted::look(
+                    renderer.counters.radiance.as_ref(),
+                    &mut graph,
+                    &mut imports,
+                    "radiance health",
+                    sampled.looks,
+                );
                 frame.light = if sampled.light.is_empty() { Light::None } else { Light::Vertices };
                 let lights = frame.instances.iter_mut().zip(sampled.light);
                 lights.for_each(|(instance, light)| instance.light = Some(light));

@@ -11,6 +11,7 @@ use airglow_graph::{Access, Graph, LeftOut};
 use airglow_math::Preset;
 use airglow_scene::{Image, Material, MaterialClass, Scene};
 
+use super::counted::Counted;
 use super::device::Device;
 use super::filter::{Filter, MappedFragments, Under};
 use super::lighting::Source;
@@ -29,6 +30,9 @@ pub struct MappedMaterials {
     preset: Option<Preset>,
     /// What was left out, as plans say it.
     pub left_out: Vec<LeftOut>,
+    /// What is counted of the textures.
+    pub counted: Option<Counted>,
+    count: bool,
     materials: Vec<Option<Mapped>>,
 }
 
@@ -69,10 +73,17 @@ pub fn requirements(scene: &Scene) -> Requirements {
 }
 
 impl MappedMaterials {
-    /// Filters the maps of a scene that `source` lights.
-    pub fn new(device: &Device<'_>, scene: &Scene, source: &Source, filter: Filter) -> Outcome<Self> {
+    /// Filters the maps of a scene that `source` lights; with `count` what is bad about the textures is counted.
+    pub fn new(
+        device: &Device<'_>,
+        scene: &Scene,
+        source: &Source,
+        filter: Filter,
+        count: bool,
+    ) -> Outcome<Self> {
         let preset = scene.presets.of("normals");
-        let mut maps = Self { filter, preset, left_out: Vec::new(), materials: Vec::new() };
+        let mut maps =
+            Self { filter, preset, left_out: Vec::new(), counted: None, count, materials: Vec::new() };
         let lit = !scene.lights.is_empty() || matches!(source, Source::Relight(_));
         for material in &scene.materials {
             let mapped = match lit && is_drawn(scene, material) {
@@ -198,6 +209,10 @@ impl MappedMaterials {
         let context = device.context();
         let normals = Normals::new(context, settings).map_err(Failure::work)?;
         let mut build = normals.build(context, map).map_err(Failure::input)?;
+        if self.count && self.counted.is_none() {
+            self.counted = Some(Counted::new(device, &normals::HEALTH)?);
+        }
+        self.counted.iter().for_each(|counted| build.count(&counted.tally));
         let (mut graph, mut imports) = (Graph::new(), Imports::new());
         build.add(&mut graph, &mut imports, usize::MAX);
         self.left_out.extend(build.left_out().iter().cloned());

@@ -15,6 +15,8 @@ pub mod ball;
 pub mod complete;
 #[cfg(feature = "relight")]
 pub mod debug;
+#[cfg(feature = "relight")]
+pub mod counted;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
 pub mod device;

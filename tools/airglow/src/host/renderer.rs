@@ -2,17 +2,16 @@
 
 use std::sync::Arc;
 
-#[cfg(feature = "fog")]
-use airglow::fog::InputHealth;
 use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
 use airglow_gpu::{
-    Buffer, Calibration, Execution, FrameTimes, Health, Imports, Label, Location, Timing, TimingSummary,
+    Buffer, Calibration, Execution, FrameTimes, Imports, Label, Location, Timing, TimingSummary,
 };
 use airglow_graph::{BufferDesc, LeftOut, Plan};
 use airglow_scene::{Camera, Exposure, FloatImage, Scene};
 use glam::DQuat;
 
+use super::counted::Counters;
 use super::device::Device;
 use super::draw::Pipelines;
 use super::environment_samples::EnvironmentSamples;
@@ -63,6 +62,8 @@ pub struct Renderer<'d> {
     pub(super) relight_bytes: u64,
     /// What the pass takes in a frame, where that was measured.
     pub(super) relight_seconds: Option<f64>,
+    /// What passes count, where they do.
+    pub(super) counters: Counters,
     pub(super) linear: Buffer,
     pub(super) display: Buffer,
     /// What a window has drawn over its picture.
@@ -116,10 +117,10 @@ pub const WARM_UP: usize = 2;
 impl<'d> Renderer<'d> {
     /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
     pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
-        Self::with_filter(device, scene, source, picture, Filter::default())
+        Self::with_filter(device, scene, source, picture, Filter::default(), false)
     }
 
-    /// The same with normal maps filtered in a stated way.
+    /// The same with normal maps filtered in a stated way, and with `count` what is bad about their textures counted.
     #[cfg_attr(
         not(feature = "normals"),
         expect(unused_variables, reason = "without the room no map is drawn")
@@ -130,6 +131,7 @@ impl<'d> Renderer<'d> {
         source: &Source,
         picture: [u32; 2],
         filter: Filter,
+        count: bool,
     ) -> Outcome<Self> {
         let context = device.context();
         let mut device_scene =
@@ -156,13 +158,19 @@ impl<'d> Renderer<'d> {
         #[cfg(not(feature = "fog"))]
         let fogged: Option<Vec<u32>> = None;
         #[cfg(feature = "normals")]
-        let maps = MappedMaterials::new(device, scene, source, filter)?;
+        let maps = MappedMaterials::new(device, scene, source, filter, count)?;
         #[cfg(feature = "normals")]
         maps.attach(scene, source, &mut device_scene);
         #[cfg(feature = "normals")]
         let (mapped, about_maps) = (maps.fragments(scene, fogged.is_some()), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
+        #[cfg_attr(not(feature = "normals"), expect(unused_mut, reason = "without the room nothing is counted yet"))]
+        let mut counters = Counters::default();
+        #[cfg(feature = "normals")]
+        {
+            counters.normals = maps.counted;
+        }
         let skins = Skins::new(device, scene, &mut device_scene)?;
         let lights = !scene.lights.is_empty();
         #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only a medium adds to the sky"))]
@@ -193,6 +201,7 @@ impl<'d> Renderer<'d> {
             unread: unread::of_frame(scene, source).into_iter().chain(about_maps).collect(),
             relight_bytes: lighting::relight_bytes(scene),
             relight_seconds: None,
+            counters,
             linear,
             display,
             over: None,
@@ -282,28 +291,6 @@ impl<'d> Renderer<'d> {
         Ok(ours().next().is_some().then(|| ours().map(|pass| pass.median).sum()))
     }
 
-    /// Has the fog pass count bad pixels of the pictures it gets, where there is the pass.
-    #[cfg(feature = "fog")]
-    pub fn count_health(&mut self) -> Outcome {
-        if let Some(fog) = &mut self.fog {
-            fog.health = Some(InputHealth::new(self.device.context()).map_err(Failure::work)?);
-        }
-        Ok(())
-    }
-
-    /// The counters of the passes that were asked to count.
-    pub fn health(&mut self) -> Vec<&mut Health> {
-        let relight = match &mut self.lighting {
-            Lighting::Relight(lit) => lit.relight.health(),
-            _ => None,
-        };
-        let counters = relight.into_iter();
-        #[cfg(feature = "fog")]
-        let counters =
-            counters.chain(self.fog.iter_mut().filter_map(|fog| Some(fog.health.as_mut()?.counters())));
-        counters.collect()
-    }
-
     /// What a plan says of the time that leaving the pass out saves, seconds.
     pub fn say_relight_takes(&mut self, seconds: Option<f64>) {
         self.relight_seconds = seconds;
@@ -325,7 +312,9 @@ impl<'d> Renderer<'d> {
             true => Some(timing.and_then(Timing::with_pipeline_statistics).map_err(Failure::device)?),
             false => timing.ok(),
         };
-        let execution = Execution::prepare(context, plan).map_err(Failure::work)?;
+        let prepare =
+            if settings.share_transients { Execution::prepare_shared } else { Execution::prepare };
+        let execution = prepare(context, plan).map_err(Failure::work)?;
         Ok(Compiled { execution, imports, timing, turning })
     }
 

@@ -32,6 +32,8 @@ pub struct Settings {
     pub time: f64,
     /// Seconds from one frame to the next.
     pub step: f64,
+    /// Has the transients of the frame share memory.
+    pub share_transients: bool,
     /// How the scene's medium is drawn.
     pub air: Air,
     /// The images of a window, of the picture's size, that get a copy of it. The picture for the display then has the
@@ -86,6 +88,7 @@ impl Settings {
             count_shadow: false,
             time: 0.0,
             step: 0.0,
+            share_transients: false,
             air: Air::Fog,
             window: None,
         }

@@ -2,7 +2,7 @@
 
 use airglow::shadow::spheres::{Hierarchy, Node};
 use airglow::shadow::{self, Blockers, Counts, Receivers, Shadow, Sphere};
-use airglow_gpu::{Buffer, Imports, Record, Requirements};
+use airglow_gpu::{Buffer, Imports, Look, Record, Requirements};
 use airglow_graph::{self as graph, Access, Graph, Handle, LeftOut};
 use airglow_scene::{Mesh, Scene};
 use glam::{DMat4, DVec3, Mat4};
@@ -51,6 +51,8 @@ pub struct Shadowed {
     pub visibility: Vec<Option<Handle<graph::Buffer>>>,
     /// What the clusters of all instances counted, once the frame is done; filled only if it was asked for.
     pub counts: Vec<CountsSlot>,
+    /// What a tally of the room's counters looks at.
+    pub looks: Vec<Look<Handle<graph::Buffer>>>,
 }
 
 /// What is read back of an instance's clusters.
@@ -161,6 +163,11 @@ impl SceneShadow {
             let Instance { receivers, blockers, .. } = instance;
             let added = self.pass.add(graph, receivers, blockers, positions, Some(normals));
             shadowed.visibility.push(added.visibility);
+            if let (Some(visibility), Some(records)) = (added.visibility, added.records) {
+                let order = self.pass.settings().order;
+                let looks = receivers.looks(order, positions, Some(normals), visibility, records);
+                shadowed.looks.extend(looks);
+            }
             if let (true, Some(records)) = (count, added.records) {
                 shadowed.counts.push(Kept::add(graph, "shadow counts", records));
             }

@@ -1,4 +1,4 @@
-//! What the passes count while they work: texels of the environment that are not finite or negative.
+//! What the passes count while they work: inputs that are not finite, limits that were hit, and the like.
 
 use airglow_gpu::Health;
 use serde::Serialize;

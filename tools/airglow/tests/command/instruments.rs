@@ -2,6 +2,9 @@
 
 #![cfg(feature = "relight")]
 
+#[cfg(all(feature = "fog", feature = "radiance", feature = "normals"))]
+use crate::counts::counts;
+use crate::counts::lines;
 use crate::root;
 use std::path::Path;
 use std::process::Command;
@@ -11,8 +14,13 @@ use serde_json::Value;
 
 /// What `render --stat` writes of a small scene.
 fn render(folder: &Path, more: &[&str]) -> Value {
-    let scene = root().join("assets/scenes/spot.toml").display().to_string();
-    let small = ["-o", "a.png", "--size", "64x48", "--rays", "16", "--exposure", "1"];
+    render_of(folder, "spot", more)
+}
+
+/// The same of another scene.
+fn render_of(folder: &Path, scene: &str, more: &[&str]) -> Value {
+    let scene = root().join(format!("assets/scenes/{scene}.toml")).display().to_string();
+    let small = ["-o", "a.exr", "--size", "64x48", "--rays", "16", "--exposure", "1"];
     let common = ["--stat", "stat.json", "--device", "cpu", "--quiet"];
     let arguments = [&["render", &scene], &small[..], &common[..], more].concat();
     let output =
@@ -23,13 +31,6 @@ fn render(folder: &Path, more: &[&str]) -> Value {
 
 fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
-}
-
-/// The counts that are not 0 under a title, a line for each; nothing where all are.
-fn lines(title: &str, counts: &Value) -> String {
-    let some = counts.as_object().into_iter().flatten().filter(|(_, count)| **count != 0);
-    let lines: String = some.map(|(name, count)| format!("    {name} {count}\n")).collect();
-    if lines.is_empty() { lines } else { format!("  {title}\n{lines}") }
 }
 
 /// Times differ from machine to machine; these do not. llvmpipe's own counts are the same at vector widths of 128 to 512
@@ -50,6 +51,35 @@ fn counts_of_every_pass_are_exact() {
     }
     let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/counts.txt");
     assert_text(&golden, &text);
+}
+
+/// The same of scenes that the other rooms draw; that of moving shadows stands in `moving.rs`.
+#[test]
+#[cfg(all(feature = "fog", feature = "radiance", feature = "normals"))]
+fn counts_of_other_scenes_are_exact() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["street", "blocks", "grooves"] {
+        let stat = render_of(folder.path(), scene, &["--frames", "3", "--pipeline-statistics", "--health"]);
+        let title = format!("{scene}.toml, 64 x 48 pixels of 2 x 2 samples, on llvmpipe");
+        let golden = format!("tests/golden/counts-{scene}.txt");
+        assert_text(&Path::new(env!("CARGO_MANIFEST_DIR")).join(golden), &counts(&title, &stat));
+    }
+}
+
+/// Memory that transients hand to one another holds the same picture.
+#[test]
+fn transients_that_share_memory_draw_the_same_picture_from_fewer_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |more: &[&str]| {
+        let stat = render(folder.path(), &[&["--frames", "2", "--views", "2"], more].concat());
+        let owner = |owner: &&Value| owner["owner"] == "transient";
+        let bytes = stat["memory"].as_array().unwrap().iter().find(owner).unwrap()["bytes"].as_u64();
+        (std::fs::read(folder.path().join("a.exr")).unwrap(), bytes.unwrap())
+    };
+    let (apart, shared) = (draw(&[]), draw(&["--share-transients"]));
+    assert!(apart.0 == shared.0, "the same picture");
+    println!("{} bytes of transients, {} shared", apart.1, shared.1);
+    assert!(shared.1 < apart.1, "{} bytes of {}", shared.1, apart.1);
 }
 
 #[test]

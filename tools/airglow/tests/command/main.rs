@@ -4,6 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
 mod debug;
+mod counts;
 mod explain;
 mod fog;
 mod instruments;

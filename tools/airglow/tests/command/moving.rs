@@ -13,9 +13,11 @@ use airglow::shadow::reference::{Reference, caps};
 use airglow::shadow::{Exponential, Sphere};
 use airglow_scene::FloatImage;
 use airglow_scene::image_io::{read_environment, read_image};
+use airglow_tests::golden::assert_text;
 use glam::DVec3;
 use serde_json::Value;
 
+use super::counts::counts;
 use super::root;
 
 /// Pixels of a side, so many of them from one vertex of the ground to the next, which are 8 m / 12 apart.
@@ -137,9 +139,13 @@ fn fog_comes_over_shadowed_surfaces() {
     }
 }
 
+fn stat(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("stat.json")).unwrap()).unwrap()
+}
+
 /// Passes with their counts, and bytes held by each owner.
 fn work(folder: &Path) -> Value {
-    let stat: Value = serde_json::from_slice(&std::fs::read(folder.join("stat.json")).unwrap()).unwrap();
+    let stat = stat(folder);
     let passes = stat["passes"].as_array().unwrap().iter();
     let passes: Vec<Value> = passes.map(|pass| serde_json::json!([pass["name"], pass["counts"]])).collect();
     serde_json::json!([passes, stat["memory"]])
@@ -158,7 +164,10 @@ fn where_nothing_blocks_every_bit_and_count_is_that_of_a_frame_without_the_pass(
     let (bare, ball) = (of("bare.toml", &[]), of("ball.toml", &["--without", "shadow"]));
     assert!(bare.0.pixels == ball.0.pixels, "the same bits");
     assert_eq!(bare.1, ball.1, "the same passes, counts and bytes");
-    assert_ne!(of("ball.toml", &[]).1, bare.1);
+    let counted = ["--health", "--pipeline-statistics", "--frames", "3"];
+    assert_ne!(of("ball.toml", &counted).1, bare.1);
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/counts-ball.txt");
+    assert_text(&golden, &counts("the shadow of a ball, 65 x 65 pixels, on llvmpipe", &stat(here)));
     for (scene, more, why) in [
         ("bare.toml", &[][..], "nothing that moves blocks"),
         ("ball.toml", &["--without", "shadow"], "asked to leave it out"),
