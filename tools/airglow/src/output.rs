@@ -1,9 +1,10 @@
 //! Where results, remarks and progress go: results to standard output, everything else to standard error.
 
 use std::io::{ErrorKind, Write};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use crate::cli::Global;
@@ -29,12 +30,14 @@ fn tell(line: &str) {
 pub struct Output {
     quiet: bool,
     json: bool,
+    /// The bar of progress made last, where somebody watches it.
+    watched: Option<Arc<Mutex<Option<ProgressBar>>>>,
 }
 
 impl Output {
     /// Reads `--quiet` and `--json`.
     pub fn new(global: &Global) -> Self {
-        Self { quiet: global.quiet, json: global.json }
+        Self { quiet: global.quiet, json: global.json, watched: None }
     }
 
     /// Whether results are to be printed as JSON.
@@ -75,9 +78,29 @@ impl Output {
         tell(&format!("error: {failure}"));
     }
 
+    /// The same with bars that are not printed but told by [`Output::watch`]; and no remarks.
+    #[cfg(feature = "view")]
+    #[must_use]
+    pub fn watched(&self) -> Self {
+        Self { quiet: true, json: self.json, watched: Some(Arc::default()) }
+    }
+
+    /// How far the bar made last is, 0 to 1.
+    #[cfg(feature = "view")]
+    pub fn watch(&self) -> Option<f32> {
+        let bar = self.watched.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let length = bar.length().filter(|length| *length > 0)?;
+        Some((bar.position() as f32 / length as f32).min(1.0))
+    }
+
     /// A progress bar over `length` steps of `unit`; hidden with `--quiet` and when standard error is no
     /// terminal.
     pub fn progress(&self, what: &str, length: u64, unit: &str) -> ProgressBar {
+        if let Some(watched) = &self.watched {
+            let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
+            *watched.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+            return bar;
+        }
         if self.quiet {
             return ProgressBar::hidden();
         }

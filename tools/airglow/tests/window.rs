@@ -24,6 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const ESCAPE: u8 = 9;
 const R: u8 = 27;
 const HOME: u8 = 110;
+const P: u8 = 33;
 
 /// An X server without a screen.
 struct Display {
@@ -34,7 +35,7 @@ struct Display {
 impl Display {
     fn start() -> Self {
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "640x480x24", "-nolisten", "tcp"])
+            .args(["-displayfd", "1", "-screen", "0", "800x1040x24", "-nolisten", "tcp"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
@@ -55,23 +56,47 @@ impl Drop for Display {
     }
 }
 
+/// A scene with something for every pass but normal maps: a lamp before a cow, in fog, and a ball that casts a shadow.
+const SCENE: &str = r#"
+[[instance]]
+file = "MESH/spot.glb"
+[environment]
+file = "ENV/courtyard_512.exr"
+distance = 50
+[medium]
+visibility = 40
+[[emitter]]
+name = "lamp"
+center = [0.9, 1.0, 0.9]
+radius = 0.1
+radiance = [40, 30, 20]
+[[blocker]]
+center = [0.0, 1.6, 0.3]
+radius = 0.3
+[quality]
+order = 3
+rays = 16
+"#;
+
 /// A running `airglow view`, and its user.
 struct User {
     process: Child,
     connection: RustConnection,
     root: Window,
     window: Window,
+    /// So long some frames take.
+    frames: Duration,
 }
 
 impl User {
     /// Starts the command and waits for its window.
-    fn start(display: &Display, folder: &Path, more: &[&str]) -> Self {
-        let process = show(display, folder, more).spawn().unwrap();
+    fn start(display: &Display, mut command: Command) -> Self {
+        let process = command.spawn().unwrap();
         let (connection, screen) = x11rb::connect(Some(&display.name)).unwrap();
         let setup = connection.setup();
         let root = setup.roots[screen].root;
         assert_eq!(setup.image_byte_order, ImageOrder::LSB_FIRST);
-        let mut user = Self { process, connection, root, window: 0 };
+        let mut user = Self { process, connection, root, window: 0, frames: Duration::ZERO };
         user.wait("the window opens", |user| {
             let children = user.connection.query_tree(root).unwrap().reply().unwrap().children;
             let seen = |&window: &Window| {
@@ -107,6 +132,30 @@ impl User {
     /// Plays an event of keyboard or mouse.
     fn play(&self, kind: u8, detail: u8, x: i16, y: i16) {
         self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap().check().unwrap();
+    }
+
+    /// Presses and lets go.
+    fn click(&self, [x, y]: [i16; 2]) {
+        self.play(MOTION_NOTIFY_EVENT, 0, x, y);
+        self.pause();
+        self.play(BUTTON_PRESS_EVENT, 1, 0, 0);
+        self.play(BUTTON_RELEASE_EVENT, 1, 0, 0);
+    }
+
+    /// Presses, drags by so many pixels to the right, and lets go.
+    fn drag(&self, [x, y]: [i16; 2], right: i16) {
+        self.play(MOTION_NOTIFY_EVENT, 0, x, y);
+        self.pause();
+        self.play(BUTTON_PRESS_EVENT, 1, 0, 0);
+        self.pause();
+        self.play(MOTION_NOTIFY_EVENT, 0, x + right, y);
+        self.pause();
+        self.play(BUTTON_RELEASE_EVENT, 1, 0, 0);
+    }
+
+    /// Some frames go by: a press and a move of one frame are no drag.
+    fn pause(&self) {
+        std::thread::sleep(self.frames);
     }
 
     fn press(&self, key: u8) {
@@ -151,17 +200,17 @@ fn scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/scenes/spot.toml")
 }
 
+/// The picture alone.
 fn show(display: &Display, folder: &Path, more: &[&str]) -> Command {
+    let mut command = view(display, folder, &scene(), "320x240");
+    command.arg("--bare").args(more);
+    command
+}
+
+fn view(display: &Display, folder: &Path, scene: &Path, size: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));
-    command.arg("view").arg(scene()).args(COMMON).args([
-        "--size",
-        "320x240",
-        "--spin",
-        "0",
-        "--bare",
-        "--validate",
-    ]);
-    command.args(more).current_dir(folder).env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY");
+    command.arg("view").arg(scene).args(COMMON).args(["--size", size, "--spin", "0", "--validate"]);
+    command.current_dir(folder).env("DISPLAY", &display.name).env_remove("WAYLAND_DISPLAY");
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
@@ -192,7 +241,7 @@ fn the_window_shows_what_render_draws_and_follows_its_user() {
     let larger = render(here, [400, 300], &[]);
     let even = render(here, [400, 300], &["--without", "relight"]);
     let display = Display::start();
-    let mut user = User::start(&display, here, &[]);
+    let mut user = User::start(&display, show(&display, here, &[]));
     user.wait_for_picture("the window shows the picture", &relit);
 
     for width in (40..=400).step_by(10) {
@@ -230,13 +279,70 @@ fn the_window_can_be_closed_and_closes_after_its_frames() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     let display = Display::start();
-    let user = User::start(&display, here, &[]);
+    let user = User::start(&display, show(&display, here, &[]));
     user.close();
     user.end();
     let shown = printed(&show(&display, here, &["--frames", "5"]).output().unwrap());
     assert_eq!(shown["frames"], 5, "{shown}");
     let passes: Vec<_> = shown["passes"].as_array().unwrap().iter().map(|pass| &pass["name"]).collect();
     assert_eq!(passes.last(), Some(&&"interface".into()), "{shown}");
+}
+
+/// Where a part of the panel is in its middle.
+fn middle(shown: &serde_json::Value, name: &str) -> [i16; 2] {
+    let rect: Vec<f64> =
+        shown["panel"][name].as_array().unwrap().iter().map(|side| side.as_f64().unwrap()).collect();
+    [(rect[0] + rect[2]) / 2.0, (rect[1] + rect[3]) / 2.0].map(|side| side as i16)
+}
+
+#[test]
+fn the_panel_switches_passes_turns_knobs_and_moves_lamps() {
+    let folder = tempfile::tempdir().unwrap();
+    let (here, file) = (folder.path(), folder.path().join("scene.toml"));
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").canonicalize().unwrap();
+    let below = |name: &str| assets.join(name).display().to_string();
+    std::fs::write(&file, SCENE.replace("MESH", &below("mesh")).replace("ENV", &below("env"))).unwrap();
+    let display = Display::start();
+    let command = || view(&display, here, &file, "720x1000");
+    let shown = printed(&command().args(["--frames", "3"]).output().unwrap());
+    let mut user = User::start(&display, command());
+    let rate = shown["frames_per_second"].as_f64().unwrap();
+    user.frames = Duration::from_secs_f64((3.0 / rate).max(0.1));
+    let picture = |user: &User| -> Vec<[u8; 3]> {
+        let rows = user.pixels([720, 1000]);
+        rows.chunks(720).flat_map(|row| row[360..].to_vec()).collect()
+    };
+    let changes = |user: &mut User, what: &str, act: &dyn Fn(&User)| {
+        let mut before = picture(user);
+        user.wait("the picture stands still", |user| {
+            user.pause();
+            let now = picture(user);
+            std::mem::replace(&mut before, now.clone()) == now && now.iter().any(|texel| *texel != [0; 3])
+        });
+        act(user);
+        user.wait(what, |user| picture(user) != before);
+    };
+    for pass in ["fog", "shadow", "radiance"] {
+        changes(&mut user, pass, &|user| user.click(middle(&shown, pass)));
+        changes(&mut user, pass, &|user| user.click(middle(&shown, pass)));
+    }
+    changes(&mut user, "the lamp follows the mouse", &|user| user.drag(middle(&shown, "ring of lamp"), -60));
+    let [x, y] = middle(&shown, "shadow window");
+    changes(&mut user, "the shadows ring less", &|user| user.drag([x - 100, y], 60));
+    changes(&mut user, "the picture is brighter", &|user| {
+        let [x, y] = middle(&shown, "exposure");
+        user.drag([x - 62, y], 30);
+    });
+    user.press(P);
+    let path = here.join("view.png");
+    user.wait("the picture is written", |_| path.exists());
+    let written = airglow_scene::image_io::read_image(&path).unwrap();
+    assert_eq!([written.width, written.height], [720, 1000]);
+    let size = ConfigureWindowAux::new().width(500).height(400);
+    user.connection.configure_window(user.window, &size).unwrap().check().unwrap();
+    user.wait("the window is smaller", |user| user.pixels([720, 1000])[600] == [0; 3]);
+    user.press(ESCAPE);
+    user.end();
 }
 
 #[test]

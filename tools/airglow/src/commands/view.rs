@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use glam::{DQuat, Vec3};
+use glam::DQuat;
 use serde::Serialize;
 
 use crate::cli::Global;
@@ -12,11 +12,13 @@ use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::host::device;
 use crate::host::lighting::Source;
-use crate::host::renderer::{Air, Renderer, Settings};
+use crate::host::renderer::{Air, Settings};
 use crate::measure::pass::{PassStat, timed};
 use crate::output::Output;
 use crate::report::model::Machine;
 use crate::window::controls;
+use crate::window::reload::Watch;
+use crate::window::stage::Stage;
 use crate::window::viewer::{Show, Shown, Viewer};
 use crate::window::{Places, event_loop, instance_extensions};
 
@@ -56,6 +58,14 @@ pub struct Arguments {
     /// Hide the panel at first; `h` brings it.
     #[arg(long)]
     bare: bool,
+    /// Watch a folder like `shaders` and draw with those of the host's modules in its `spirv` that change from now on. What
+    /// cannot be drawn with is told, and the last good ones stay. Kernels of passes are built into them and do not change.
+    #[arg(long, value_name = "FOLDER")]
+    shaders: Option<PathBuf>,
+    /// With --shaders: what makes its modules when its GLSL changes, run by a shell, such as
+    /// "cargo run -q -p xtask -- shaders --room host". What it says where it fails is told in the window.
+    #[arg(long, value_name = "COMMAND", requires = "shaders")]
+    compile: Option<String>,
 }
 
 /// What was shown, as `--json` prints it.
@@ -79,20 +89,22 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
     let stat = device::with_window(global, &source.requirements(&scene), &extensions, |device| {
         let mut start = settings(arguments);
-        let mut renderer = Renderer::new(device, &scene, &source, start.picture_size())?;
-        start.exposure = renderer.exposure(arguments.exposure, scene.exposure, &start)?;
+        let (camera, stated) = (scene.camera(), scene.exposure);
+        let cache = arguments.scene.cache.clone();
+        let mut stage = Stage::new(device, scene, source, start.picture_size(), cache, output.clone())?;
+        start.exposure = stage.renderer.exposure(arguments.exposure, stated, &start)?;
         let show = Show {
             title: format!("{}, airglow", arguments.scene.scene.display()),
-            camera: scene.camera(),
-            center: scene.bounding_sphere().map_or(Vec3::ZERO, |sphere| sphere.center.into()),
+            camera,
             start,
             spin: arguments.spin,
             frames: arguments.frames,
             picture: arguments.picture.clone().unwrap_or_else(|| PathBuf::from("view.png")),
             last_picture: arguments.picture.is_some() && arguments.frames.is_some(),
             bare: arguments.bare,
+            watch: arguments.shaders.clone().map(|folder| Watch::new(folder, arguments.compile.clone())),
         };
-        let mut viewer = Viewer::new(device, renderer, show)?;
+        let mut viewer = Viewer::new(device, stage, show)?;
         event_loop.run_app(&mut viewer).map_err(Failure::work)?;
         Ok(stat(device.machine(), viewer.finish()?))
     })?;

@@ -59,6 +59,16 @@ impl SceneFog {
         uploaded: Option<&DeviceScene>,
         hdr: vk::Format,
     ) -> Outcome<Option<Self>> {
+        Self::with_settings(device, scene, uploaded, settings(scene, hdr))
+    }
+
+    /// The same with other settings than the scene asks for.
+    pub fn with_settings(
+        device: &Device<'_>,
+        scene: &Scene,
+        uploaded: Option<&DeviceScene>,
+        settings: fog::Settings,
+    ) -> Outcome<Option<Self>> {
         let Some(medium) = scene.medium else { return Ok(None) };
         let context = device.context();
         let medium = fog::Medium {
@@ -67,15 +77,20 @@ impl SceneFog {
             phase: fog::Phase::HenyeyGreenstein { g: f64::from(medium.anisotropy) },
             thinning: None,
         };
-        let lights: Vec<fog::Light> = scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect();
+        let lights = lights(scene);
         let reflecting = scene.materials.iter().filter(|_| !lights.is_empty());
         let lobes: Vec<Lobe> = reflecting.flat_map(lobes).flatten().collect();
-        let settings = settings(scene, hdr);
         let lobes = LobeTables::new(context, settings.preset, &lobes).map_err(Failure::work)?;
         let pass = Fog::new(context, settings).map_err(Failure::work)?;
         let sky =
             uploaded.map(|uploaded| FoggedSky::new(device, scene, uploaded, &medium)).transpose()?.flatten();
         Ok(Some(Self { pass, lobes, sky, health: None, medium, lights }))
+    }
+
+    /// Puts the lights where they are in a scene that has moved them.
+    #[cfg(feature = "view")]
+    pub fn place_lights(&mut self, scene: &Scene) {
+        self.lights = lights(scene);
     }
 
     /// The fragment stage of the forward draw, where surfaces reflect light out of the medium.
@@ -130,6 +145,11 @@ fn lobes(material: &Material) -> [Option<Lobe>; 2] {
     let roughness = f64::from(f16::from_f32(material.roughness));
     let alpha = (roughness * roughness).clamp(0.002, 1.0);
     [lit.then_some(Lobe::Lambert), lit.then_some(Lobe::Ggx(alpha))]
+}
+
+/// The lights inside the medium.
+fn lights(scene: &Scene) -> Vec<fog::Light> {
+    scene.lights.iter().filter_map(light).take(fog::MAX_LIGHTS).collect()
 }
 
 /// A light inside the medium; a directional one is none.

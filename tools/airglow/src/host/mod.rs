@@ -54,6 +54,8 @@ pub mod near_tree;
 pub mod over;
 #[cfg(feature = "relight")]
 pub mod permutations;
+#[cfg(feature = "view")]
+pub mod remake;
 #[cfg(feature = "relight")]
 pub mod renderer;
 pub mod scene;

@@ -157,7 +157,16 @@ impl NearLight {
         if !is_drawn(scene) {
             return Ok(None);
         }
-        let settings = settings(scene);
+        Self::with_settings(context, scene, transfer, settings(scene)).map(Some)
+    }
+
+    /// The same with other settings than the scene asks for, where it has something to do.
+    pub fn with_settings(
+        context: &Context,
+        scene: &Scene,
+        transfer: &SceneTransfer,
+        settings: PassSettings,
+    ) -> Outcome<Self> {
         let placed = Placed::new(scene, transfer);
         let tree = match &transfer.tree {
             Some(tree) if tree.vertices().len() == placed.positions.len() => tree.clone(),
@@ -170,7 +179,7 @@ impl NearLight {
             None => Vec::new(),
         };
         let (triangles, spheres) = emitters::shapes(&scene.emitters, 0.0);
-        Ok(Some(Self {
+        Ok(Self {
             radiance: Radiance::new(context, settings).map_err(Failure::work)?,
             receiver,
             emitters: scene.emitters.clone(),
@@ -178,7 +187,26 @@ impl NearLight {
             spheres,
             distant,
             settings,
-        }))
+        })
+    }
+
+    /// Puts the emitters where they start in a scene that has moved them.
+    #[cfg(feature = "view")]
+    pub fn place_emitters(&mut self, emitters: &[Emitter]) {
+        self.emitters = emitters.to_vec();
+        self.move_emitters(0.0);
+    }
+
+    /// Where the samples of the last frame are, once it is done: metres, in the world.
+    #[cfg(feature = "view")]
+    pub fn sample_points(&self, device: &Device<'_>) -> Outcome<Vec<glam::Vec3>> {
+        let run = device.bench();
+        let bench = Bench { context: device.context(), run: &run };
+        let samples = self.receiver.samples();
+        let states: Vec<RefineState> = bench.read(&samples.state).map_err(Failure::work)?;
+        let points: Vec<[f32; 4]> = bench.read(&samples.points).map_err(Failure::work)?;
+        let taken = states.first().map_or(0, |state| state.taken as usize);
+        Ok(points.iter().take(taken).map(|[x, y, z, _]| glam::Vec3::new(*x, *y, *z)).collect())
     }
 
     /// Moves the emitters to `part` of their ways; frames declared before keep them where they were.

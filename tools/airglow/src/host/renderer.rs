@@ -209,6 +209,7 @@ impl<'d> Renderer<'d> {
     }
 
     /// Makes a target of another size; frames declared before keep theirs.
+    #[cfg(feature = "view")]
     pub fn resize(&mut self, picture: [u32; 2]) -> Outcome {
         [self.linear, self.display] = targets(self.device, picture)?;
         Ok(())

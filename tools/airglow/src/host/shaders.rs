@@ -5,19 +5,47 @@ use super::filter::{Filter, Under};
 #[cfg(feature = "normals")]
 use super::scene::Look;
 
+/// Modules by `room/entry`.
+#[cfg(feature = "view")]
+pub type Modules = std::collections::BTreeMap<String, Vec<u32>>;
+
+/// Those that stand in for modules built in.
+#[cfg(feature = "view")]
+static REPLACED: std::sync::Mutex<Modules> = std::sync::Mutex::new(Modules::new());
+
+/// Has these modules stand in for those of their names that are built in; returns those that did so before.
+#[cfg(feature = "view")]
+pub fn replace(modules: Modules) -> Modules {
+    let mut replaced = REPLACED.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    std::mem::replace(&mut *replaced, modules)
+}
+
+/// The words of a module, which are built in unless others stand in for them.
+#[cfg_attr(not(feature = "view"), expect(unused_variables, reason = "all are built in"))]
+fn words(name: &str, built_in: &[u8]) -> Vec<u32> {
+    #[cfg(feature = "view")]
+    if let Some(words) = REPLACED.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get(name) {
+        return words.clone();
+    }
+    bytemuck::pod_collect_to_vec(built_in)
+}
+
 /// The words of a module in `shaders/spirv/host`, or in a room's folder.
 macro_rules! module {
     ($name:literal) => {
         module!("host/", $name)
     };
     ($room:literal, $name:expr) => {
-        bytemuck::pod_collect_to_vec::<u8, u32>(include_bytes!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../shaders/spirv/",
-            $room,
-            $name,
-            ".spv"
-        )))
+        words(
+            concat!($room, $name),
+            include_bytes!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/../../shaders/spirv/",
+                $room,
+                $name,
+                ".spv"
+            )),
+        )
     };
 }
 

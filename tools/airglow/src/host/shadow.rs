@@ -120,7 +120,16 @@ impl SceneShadow {
         if !is_drawn(scene) {
             return Ok(None);
         }
-        let settings = settings(scene);
+        Self::with_settings(device, scene, transfer, settings(scene)).map(Some)
+    }
+
+    /// The same with other settings than the scene asks for, where it has something to do.
+    pub fn with_settings(
+        device: &Device<'_>,
+        scene: &Scene,
+        transfer: &SceneTransfer,
+        settings: shadow::Settings,
+    ) -> Outcome<Self> {
         let pass = Shadow::new(device.context(), settings).map_err(Failure::work)?;
         let mut instances = Vec::with_capacity(scene.instances.len());
         for (number, lit) in transfer.instances.iter().enumerate() {
@@ -131,7 +140,24 @@ impl SceneShadow {
         let spheres = Blocking::new(scene, transfer.spheres.clone(), settings.order)?;
         let shadow = Self { pass, instances, spheres, moving: skin::moving(scene) };
         shadow.set_time(0.0)?;
-        Ok(Some(shadow))
+        Ok(shadow)
+    }
+
+    /// Puts the figures where they start in a scene that has moved them.
+    #[cfg(feature = "view")]
+    pub fn place_figures(&mut self, scene: &Scene) {
+        self.moving = skin::moving(scene);
+    }
+
+    /// The spheres where they are `seconds` after the scene's time 0, in the world.
+    #[cfg(feature = "view")]
+    pub fn spheres(&self, seconds: f32) -> Vec<Sphere> {
+        let moved = |own: &InstanceSpheres| {
+            let figure = &self.moving.figures[own.figure];
+            own.in_pose(&self.moving, &self.moving.pose(figure, seconds))
+        };
+        let moving = self.spheres.moving.iter().flat_map(moved);
+        self.spheres.fixed.iter().copied().chain(moving).collect()
     }
 
     /// Moves the spheres to where they are `seconds` after the scene's time 0, from the next recording on.

@@ -96,6 +96,12 @@ impl Skins {
         Ok(Some(skins))
     }
 
+    /// Puts the figures where they start in a scene that has moved them.
+    #[cfg(feature = "view")]
+    pub fn place(&mut self, scene: &Scene) {
+        self.moving = moving(scene);
+    }
+
     /// Poses the figures as they are `seconds` after the scene's time 0, from the next recording on.
     pub fn set_time(&self, seconds: f32) {
         let poses: Vec<_> =

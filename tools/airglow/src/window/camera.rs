@@ -223,7 +223,7 @@ mod tests {
         rig.pan([60.0, -25.0], height);
         let camera = rig.camera();
         let clip = camera.clip_from_view(1.0) * camera.view() * CENTER.extend(1.0);
-        let pixels = [0.5 * height * clip.x / clip.w, -0.5 * height * clip.y / clip.w];
+        let pixels = [0.5 * height * clip.x / clip.w, 0.5 * height * clip.y / clip.w];
         assert!((pixels[0] - 60.0).abs() < 0.1 && (pixels[1] + 25.0).abs() < 0.1, "{pixels:?}");
     }
 }

@@ -6,7 +6,7 @@ use winit::keyboard::{Key, KeyCode, NamedKey, PhysicalKey};
 /// For `airglow view --help`.
 pub const HELP: &str = "\
 Mouse and keys:
-  drag, left button     the camera goes around the scene, or looks around where it flies
+  drag, left button     a lamp or figure by its ring; else the camera goes around the scene, or looks around where it flies
   drag, middle button   the camera moves sideways
   drag, right button    the light turns
   wheel                 nearer, farther
@@ -16,7 +16,8 @@ Mouse and keys:
   + -                   exposure, half a stop up or down
   p                     write a picture of the window
   h                     hide or show the panel
-  Home                  camera, light and exposure as at the start
+  Home                  camera, light, exposure, lamps and figures as at the start
+  a file dropped        another scene (.toml, .gltf, .glb) or environment (.hdr, .exr)
   Escape                quit";
 
 /// What a key asks for.
@@ -126,6 +127,23 @@ pub struct Controls {
     pub flies: bool,
     /// Whether the panel is hidden.
     pub bare: bool,
+    /// Whether figures walk.
+    pub walks: bool,
+    /// Seconds that they have walked.
+    pub walked: f64,
+    /// What is drawn over the picture.
+    pub shown: Shown,
+}
+
+/// What is drawn over the picture, where the panel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// What can be dragged.
+    pub handles: bool,
+    /// Where the radiance pass sampled.
+    pub samples: bool,
+    /// The spheres that cast shadows.
+    pub spheres: bool,
 }
 
 /// Passes that are drawn.
@@ -143,7 +161,19 @@ impl Controls {
     /// The start, with the light turning by so many degrees in a second.
     pub fn new(spin: f64) -> Self {
         let passes = Passes { relight: true, shadow: true, fog: true };
-        Self { passes, stops: 0.0, turn: 0.0, spin, paused: false, flies: false, bare: false }
+        let shown = Shown { handles: true, samples: false, spheres: false };
+        Self {
+            passes,
+            stops: 0.0,
+            turn: 0.0,
+            spin,
+            paused: false,
+            flies: false,
+            bare: false,
+            walks: true,
+            walked: 0.0,
+            shown,
+        }
     }
 
     /// Does what a key asks for, where that is no more than a change of this.
@@ -157,7 +187,7 @@ impl Controls {
             Action::Darker => self.stops = (self.stops - 0.5).max(-20.0),
             Action::Fly => self.flies = !self.flies,
             Action::Panel => self.bare = !self.bare,
-            Action::Home => (self.stops, self.turn) = (0.0, 0.0),
+            Action::Home => (self.stops, self.turn, self.walked) = (0.0, 0.0, 0.0),
         }
     }
 
@@ -166,8 +196,11 @@ impl Controls {
         self.turn = wrapped(self.turn + 0.5 * f64::from(right));
     }
 
-    /// So many seconds go by: the light turns unless it is paused.
+    /// So many seconds go by: the light turns unless it is paused, and figures walk.
     pub fn advance(&mut self, seconds: f64) {
+        if self.walks {
+            self.walked += seconds;
+        }
         if !self.paused {
             self.turn = wrapped(self.turn + self.spin * seconds);
         }

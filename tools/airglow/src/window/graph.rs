@@ -8,11 +8,11 @@ use super::style::{SERIES, WEAK};
 use super::times::Times;
 
 /// Points that the graph is high.
-const HEIGHT: f32 = 72.0;
+const HEIGHT: f32 = 56.0;
 /// Frames that it is wide.
 const FRAMES: usize = 240;
 
-/// Draws the graph and, below, each pass with its time.
+/// Draws the graph.
 pub fn show(ui: &mut Ui, times: &Times) {
     let (response, painter) = ui.allocate_painter(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let area = response.rect;
@@ -21,6 +21,10 @@ pub fn show(ui: &mut Ui, times: &Times) {
     painter.add(Shape::mesh(bars(times, area, top)));
     let font = FontId::proportional(10.0);
     painter.text(area.left_top() + vec2(3.0, 1.0), egui::Align2::LEFT_TOP, milliseconds(top), font, WEAK);
+}
+
+/// Each pass with the colour that it has in the graph, and its time.
+pub fn rows(ui: &mut Ui, times: &Times) {
     let medians = times.medians();
     for &(place, time) in &medians {
         row(ui, Some(colour(place)), &times.names()[place], time);
@@ -38,7 +42,7 @@ fn row(ui: &mut Ui, colour: Option<Color32>, name: &str, time: f32) {
         }
         ui.label(RichText::new(name).small());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(RichText::new(milliseconds(time)).small().monospace());
+            ui.label(RichText::new(milliseconds(time)).monospace().size(10.5));
         });
     });
 }

@@ -1,5 +1,6 @@
 //! Mouse and keys, where the panel does not take them.
 
+use glam::Vec2;
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
 
 use super::camera::Rig;
@@ -15,6 +16,10 @@ pub struct Input {
     pub held: Held,
     /// Whether a picture was asked for.
     pub picture: bool,
+    /// What the mouse is over, of what can be dragged.
+    pub over: Option<usize>,
+    /// What of it is dragged.
+    pub grabbed: Option<usize>,
     at: Option<[f32; 2]>,
     drag: Option<Drag>,
 }
@@ -36,7 +41,10 @@ impl Input {
             }
             WindowEvent::Focused(false) => self.held = Held::default(),
             WindowEvent::MouseInput { state, button, .. } => {
+                let left = *button == MouseButton::Left;
+                self.grabbed = self.over.filter(|_| left && *state == ElementState::Pressed);
                 self.drag = match (state, button) {
+                    _ if self.grabbed.is_some() => None,
                     (ElementState::Pressed, MouseButton::Left) => Some(Drag::Camera),
                     (ElementState::Pressed, MouseButton::Middle) => Some(Drag::Pan),
                     (ElementState::Pressed, MouseButton::Right) => Some(Drag::Light),
@@ -67,6 +75,11 @@ impl Input {
 
     /// The panel took an event.
     pub fn let_go(&mut self) {
-        self.drag = None;
+        (self.drag, self.grabbed, self.at) = (None, None, None);
+    }
+
+    /// Where the mouse is, pixels.
+    pub fn mouse(&self) -> Option<Vec2> {
+        self.at.map(Vec2::from)
     }
 }

@@ -1,21 +1,33 @@
 //! The window of `airglow view`: the frames of `host`, live, and what mouse, keys and a panel change in them.
 //!
-//! `viewer` draws frame after frame; `surface` holds the window and its swapchain; `controls` is what keys, mouse and
-//! panel change, `camera` where they bring the camera; `interface` and `paint` are egui in the window, `panel` and
-//! `graph` what it lays out, `times` what passes took; `shot` writes pictures of it all.
+//! `viewer` draws frame after frame; `surface` holds the window and its swapchain, `stage` the scene in it. `controls` and
+//! `wish` are what keys, mouse and panel change: what a frame follows at once, and what passes are made anew for (`knobs`),
+//! beside the frames where that takes long (`loading`). `camera` and `grab` are what the mouse moves, `interface` and `paint`
+//! egui in the window, `layout`, `panel`, `rooms` and `graph` what it lays out, `overlay` what it draws over the picture, `times` and
+//! `kept` what passes take and took. `reload` watches shaders, `shot` writes pictures of it all.
 
 mod camera;
 pub mod controls;
+mod grab;
 mod graph;
 mod input;
 mod interface;
+mod kept;
+mod knobs;
+mod layout;
+mod loading;
+mod overlay;
 mod paint;
 mod panel;
+pub mod reload;
+mod rooms;
 mod shot;
+pub mod stage;
 mod style;
 mod surface;
 mod times;
 pub mod viewer;
+mod wish;
 
 pub use interface::Places;
 

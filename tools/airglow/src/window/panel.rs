@@ -1,16 +1,22 @@
 //! The panel: what is drawn, what it takes, and what can be changed.
 
 use airglow_graph::LeftOut;
-use egui::{CollapsingHeader, Context, RichText, ScrollArea, SidePanel, Slider, Ui};
+use airglow_scene::{Medium, Presets};
+use egui::{
+    CollapsingHeader, Context, ProgressBar, Response, RichText, ScrollArea, SidePanel, Slider,
+    TopBottomPanel, Ui,
+};
 
 use super::controls::Controls;
 use super::graph;
 use super::interface::{Places, note};
+use super::rooms;
 use super::style;
 use super::times::Times;
+use super::wish::{KNOBS, Wish};
 
 /// Points that the panel is wide at first.
-const WIDTH: f32 = 292.0;
+const WIDTH: f32 = 318.0;
 
 /// What the panel tells.
 pub struct Told<'a> {
@@ -24,8 +30,18 @@ pub struct Told<'a> {
     pub times: &'a Times,
     /// What was left out of the plan, and why.
     pub left_out: &'a [LeftOut],
-    /// What happened last.
-    pub status: &'a str,
+    /// What the scene asks of passes.
+    pub presets: &'a Presets,
+    /// Of each knob, where its pass is built in.
+    pub values: [Option<f64>; KNOBS.len()],
+    /// Of the scene.
+    pub medium: Option<Medium>,
+    /// Passes that the scene has something for.
+    pub present: &'a [&'static str],
+    /// What is being done, and how far it is.
+    pub busy: Option<(String, Option<f32>)>,
+    /// What happened last, or what went wrong.
+    pub status: &'a Result<String, String>,
 }
 
 /// What the panel asks for beyond changes of the controls.
@@ -33,12 +49,18 @@ pub struct Told<'a> {
 pub struct Asked {
     /// A picture of the window.
     pub picture: bool,
-    /// Camera, light and exposure as at the start.
+    /// Camera, light, exposure, lamps and figures as at the start.
     pub home: bool,
 }
 
 /// Lays out the panel.
-pub fn show(context: &Context, controls: &mut Controls, told: &Told<'_>, places: &mut Places) -> Asked {
+pub fn show(
+    context: &Context,
+    controls: &mut Controls,
+    wish: &mut Wish,
+    told: &Told<'_>,
+    places: &mut Places,
+) -> Asked {
     let mut asked = Asked::default();
     if controls.bare {
         return asked;
@@ -48,44 +70,39 @@ pub fn show(context: &Context, controls: &mut Controls, told: &Told<'_>, places:
         ui.label(RichText::new(format!("{:.1} frames/s", told.rate)).strong().size(15.0));
         let [width, height] = told.size;
         weak(ui, &format!("{width} x {height}, {}", told.device));
-        ui.separator();
+        graph::show(ui, told.times);
+        TopBottomPanel::bottom("happened").show_inside(ui, |ui| happened(ui, told));
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            passes(ui, controls, told, places);
-            section(ui, "Device time", |ui| graph::show(ui, told.times));
-            section(ui, "Light and camera", |ui| asked = light(ui, controls, places));
-            left_out(ui, told);
-            if !told.status.is_empty() {
-                ui.separator();
-                ui.label(told.status);
-            }
+            section(ui, "Light and camera", true, |ui| asked = light(ui, controls, places));
+            section(ui, "Passes", true, |ui| rooms::show(ui, controls, wish, told, places));
+            section(ui, "Show", true, |ui| overlays(ui, controls, places));
+            section(ui, "Device time", true, |ui| graph::rows(ui, told.times));
+            section(ui, "Left out", false, |ui| left_out(ui, told));
         });
     });
     asked
 }
 
+/// What is being done, what was done last, what went wrong.
+fn happened(ui: &mut Ui, told: &Told<'_>) {
+    match (&told.busy, told.status) {
+        (Some((words, part)), _) => {
+            let bar = ProgressBar::new(part.unwrap_or(0.0)).text(RichText::new(words).small());
+            ui.add(if part.is_none() { bar.animate(true) } else { bar });
+        }
+        (None, Ok(said)) => drop(weak(ui, said)),
+        (None, Err(wrong)) => drop(ui.label(RichText::new(wrong).small().color(style::WRONG))),
+    }
+}
+
 /// A part of the panel under a heading that folds.
-fn section(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
-    CollapsingHeader::new(RichText::new(title).strong()).default_open(true).show(ui, body);
+fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, body);
 }
 
 /// Text that explains.
-fn weak(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).color(style::WEAK).small());
-}
-
-fn passes(ui: &mut Ui, controls: &mut Controls, told: &Told<'_>, places: &mut Places) {
-    section(ui, "Passes", |ui| {
-        let passes = &mut controls.passes;
-        let rows =
-            [("relight", &mut passes.relight), ("shadow", &mut passes.shadow), ("fog", &mut passes.fog)];
-        for (name, drawn) in rows {
-            ui.horizontal(|ui| {
-                note(places, name, &ui.checkbox(drawn, name));
-                let time = told.times.of(name).map_or("not in the plan".to_owned(), milliseconds);
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| weak(ui, &time));
-            });
-        }
-    });
+pub fn weak(ui: &mut Ui, text: &str) -> Response {
+    ui.label(RichText::new(text).color(style::WEAK).small())
 }
 
 fn light(ui: &mut Ui, controls: &mut Controls, places: &mut Places) -> Asked {
@@ -93,16 +110,16 @@ fn light(ui: &mut Ui, controls: &mut Controls, places: &mut Places) -> Asked {
     let turn = ui.add(degrees(&mut controls.turn, -180.0..=180.0).text("environment"));
     note(places, "environment", &turn);
     ui.add(degrees(&mut controls.spin, -90.0..=90.0).text("a second"));
-    note(places, "stopped", &ui.checkbox(&mut controls.paused, "stopped"));
+    ui.horizontal(|ui| {
+        note(places, "stopped", &ui.checkbox(&mut controls.paused, "light stands still"));
+        note(places, "walks", &ui.checkbox(&mut controls.walks, "figures walk"));
+    });
     let exposure = ui.add(Slider::new(&mut controls.stops, -8.0..=8.0).suffix(" stops").text("exposure"));
     note(places, "exposure", &exposure);
     ui.horizontal(|ui| {
-        note(places, "orbit", &ui.selectable_label(!controls.flies, "around the scene"));
-        let flies = ui.selectable_label(controls.flies, "fly");
-        note(places, "fly", &flies);
-        if flies.clicked() {
-            controls.flies = true;
-        }
+        ui.label("camera");
+        note(places, "orbit", &ui.selectable_value(&mut controls.flies, false, "around"));
+        note(places, "fly", &ui.selectable_value(&mut controls.flies, true, "fly"));
     });
     let mut asked = Asked::default();
     ui.horizontal(|ui| {
@@ -115,17 +132,18 @@ fn light(ui: &mut Ui, controls: &mut Controls, places: &mut Places) -> Asked {
     asked
 }
 
+fn overlays(ui: &mut Ui, controls: &mut Controls, places: &mut Places) {
+    let shown = &mut controls.shown;
+    note(places, "handles", &ui.checkbox(&mut shown.handles, "lamps and figures to drag"));
+    note(places, "samples", &ui.checkbox(&mut shown.samples, "samples of near emitters"));
+    note(places, "spheres", &ui.checkbox(&mut shown.spheres, "spheres that cast shadows"));
+}
+
 fn left_out(ui: &mut Ui, told: &Told<'_>) {
-    if told.left_out.is_empty() {
-        return;
+    for left_out in told.left_out {
+        ui.label(&left_out.what);
+        weak(ui, &left_out.why);
     }
-    let header = CollapsingHeader::new(RichText::new("Left out").strong()).default_open(false);
-    header.show(ui, |ui| {
-        for left_out in told.left_out {
-            ui.label(&left_out.what);
-            weak(ui, &left_out.why);
-        }
-    });
 }
 
 /// A time as the panel writes it.

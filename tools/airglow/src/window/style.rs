@@ -7,6 +7,9 @@ pub const BACKGROUND: Color32 = Color32::from_rgba_premultiplied(20, 22, 26, 232
 /// Text that explains.
 pub const WEAK: Color32 = Color32::from_rgb(150, 156, 165);
 
+/// What went wrong.
+pub const WRONG: Color32 = Color32::from_rgb(255, 120, 100);
+
 /// The colours of passes in the graph, told apart by people who see colours differently (Okabe and Ito 2008).
 pub const SERIES: [Color32; 8] = [
     Color32::from_rgb(86, 180, 233),

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, VecDeque};
 
 use airglow_gpu::{FrameTimes, Timing};
 
+use crate::commands::scene::ROOMS;
+
 /// Frames that are kept.
 const FRAMES: usize = 240;
 /// Frames that the time of a pass is the median of.
@@ -20,7 +22,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Takes frames that are new; passes of one name in a frame count together.
+    /// Takes frames that are new; the passes of one room, and those of one name, count together.
     pub fn take(&mut self, timing: &Timing) {
         let names = timing.passes();
         let newest = self.newest;
@@ -32,9 +34,10 @@ impl Times {
     fn add(&mut self, names: &[String], frame: &FrameTimes) {
         let mut sums: BTreeMap<usize, f32> = BTreeMap::new();
         for (name, seconds) in names.iter().zip(&frame.passes) {
+            let name = group(name);
             let known = self.names.iter().position(|known| known == name);
             let place = known.unwrap_or_else(|| {
-                self.names.push(name.clone());
+                self.names.push(name.to_owned());
                 self.names.len() - 1
             });
             *sums.entry(place).or_default() += 1e3 * *seconds as f32;
@@ -72,13 +75,18 @@ impl Times {
         newest.iter().map(|&(place, _)| (place, median(place))).collect()
     }
 
-    /// Milliseconds of all passes whose names begin so, in the newest frame's plan; `None` where it has none.
-    pub fn of(&self, prefix: &str) -> Option<f32> {
-        let medians = self.medians();
-        let ours = medians.iter().filter(|(place, _)| self.names[*place].starts_with(prefix));
-        let times: Vec<f32> = ours.map(|(_, time)| *time).collect();
-        (!times.is_empty()).then(|| times.iter().sum())
+    /// Milliseconds of the passes of a room in the newest frame's plan; `None` where it has none.
+    pub fn of(&self, room: &str) -> Option<f32> {
+        self.medians().iter().find(|(place, _)| self.names[*place] == room).map(|(_, time)| *time)
     }
+}
+
+/// The room of a pass, or its name without the number of its repetition.
+fn group(name: &str) -> &str {
+    let room = ROOMS.into_iter().find(|room| {
+        name.strip_prefix(room).is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '#']))
+    });
+    room.unwrap_or_else(|| name.split('#').next().unwrap_or(name))
 }
 
 #[cfg(test)]
@@ -92,9 +100,9 @@ mod tests {
     #[test]
     fn passes_of_one_name_count_together_and_outlive_a_plan() {
         let mut times = Times::default();
-        let [a, b, c] = ["relight", "scene draw", "fog"].map(str::to_owned);
+        let [a, b, b2, c] = ["relight colours", "skin", "skin#2", "fog"].map(str::to_owned);
         for number in 0..3 {
-            times.add(&[a.clone(), b.clone(), b.clone()], &frame(number, &[1e-3, 2e-3, 3e-3]));
+            times.add(&[a.clone(), b.clone(), b2.clone()], &frame(number, &[1e-3, 2e-3, 3e-3]));
         }
         assert_eq!(times.medians(), [(0, 1.0), (1, 5.0)]);
         times.add(&[c, b], &frame(4, &[4e-3, 1e-3]));

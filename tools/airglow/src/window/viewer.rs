@@ -2,7 +2,6 @@
 //! that is compiled into it.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use airglow_gpu::TimingSummary;
@@ -20,13 +19,17 @@ use super::camera::Rig;
 use super::controls::{Action, Controls};
 use super::input::Input;
 use super::interface::{Interface, Places};
-use super::panel::{self, Told};
+use super::loading::Load;
+use super::reload::Watch;
 use super::shot::{self, Shot};
+use super::stage::Stage;
 use super::surface::ShownWindow;
 use super::times::Times;
+use super::wish::Wish;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::renderer::{Air, Compiled, Renderer, Settings};
+use crate::host::renderer::{Air, Compiled, Settings};
+use crate::host::shaders;
 
 /// Frames that the times printed at the end are medians of.
 const TIMED_FRAMES: usize = 60;
@@ -37,10 +40,8 @@ const RATE_EVERY: Duration = Duration::from_millis(500);
 pub struct Show {
     /// The window's title.
     pub title: String,
-    /// Where the camera starts, and the middle of the scene that it goes around.
+    /// Where the camera starts.
     pub camera: Camera,
-    /// Metres.
-    pub center: Vec3,
     /// The first frame; its size is that of the window at first, its turn and exposure are where input starts.
     pub start: Settings,
     /// Degrees that the light turns in a second.
@@ -53,6 +54,8 @@ pub struct Show {
     pub last_picture: bool,
     /// Whether the panel is hidden at first.
     pub bare: bool,
+    /// Shaders that may change.
+    pub watch: Option<Watch>,
 }
 
 /// What was shown.
@@ -69,46 +72,50 @@ pub struct Shown {
 
 /// Draws to a window and listens to it.
 pub struct Viewer<'d> {
-    device: &'d Device<'d>,
-    name: String,
-    renderer: Renderer<'d>,
-    show: Show,
-    settings: Settings,
-    controls: Controls,
-    rig: Rig,
-    input: Input,
-    frames: FrameLoop<'d>,
-    compiled: Option<Compiled>,
+    pub(super) device: &'d Device<'d>,
+    pub(super) name: String,
+    pub(super) stage: Stage<'d>,
+    pub(super) show: Show,
+    pub(super) settings: Settings,
+    pub(super) controls: Controls,
+    pub(super) wish: Wish,
+    pub(super) rig: Rig,
+    pub(super) input: Input,
+    pub(super) frames: FrameLoop<'d>,
+    pub(super) compiled: Option<Compiled>,
     /// Dropped before the window.
-    interface: Option<Interface>,
-    places: Places,
-    shot: Shot,
-    window: Option<ShownWindow<'d>>,
+    pub(super) interface: Option<Interface>,
+    pub(super) places: Places,
+    pub(super) shot: Shot,
+    pub(super) window: Option<ShownWindow<'d>>,
     /// Whether the swapchain must be made again.
-    stale: bool,
+    pub(super) stale: bool,
     /// Whether nothing of the window can be seen.
-    hidden: bool,
-    times: Times,
-    shown: u32,
-    first: Option<Instant>,
-    last: Option<Instant>,
+    pub(super) hidden: bool,
+    pub(super) times: Times,
+    pub(super) shown: u32,
+    pub(super) first: Option<Instant>,
+    pub(super) last: Option<Instant>,
     /// When the rate was told, how many frames had been shown, and the rate.
-    told: Option<(Instant, u32, f64)>,
-    /// What happened last.
-    status: String,
-    outcome: Outcome,
+    pub(super) told: Option<(Instant, u32, f64)>,
+    /// When samples were read back, and where they are.
+    pub(super) samples: Option<(Instant, Vec<Vec3>)>,
+    /// What happened last, or went wrong.
+    pub(super) status: Result<String, String>,
+    pub(super) outcome: Outcome,
 }
 
 impl<'d> Viewer<'d> {
-    /// Shows the renderer's scene; the window opens when the event loop runs.
-    pub fn new(device: &'d Device<'d>, renderer: Renderer<'d>, show: Show) -> Outcome<Self> {
+    /// Shows a scene; the window opens when the event loop runs.
+    pub fn new(device: &'d Device<'d>, stage: Stage<'d>, show: Show) -> Outcome<Self> {
         Ok(Self {
             device,
             name: device.machine().device,
-            renderer,
             settings: show.start,
             controls: Controls { bare: show.bare, ..Controls::new(show.spin) },
-            rig: Rig::new(show.camera.clone(), show.center),
+            wish: Wish::default(),
+            rig: Rig::new(show.camera.clone(), stage.middle()),
+            stage,
             show,
             input: Input::default(),
             frames: device.frame_loop()?,
@@ -124,7 +131,8 @@ impl<'d> Viewer<'d> {
             first: None,
             last: None,
             told: None,
-            status: String::new(),
+            samples: None,
+            status: Ok(String::new()),
             outcome: Ok(()),
         })
     }
@@ -149,6 +157,7 @@ impl<'d> Viewer<'d> {
     fn draw(&mut self) -> Outcome {
         let Some((desc, frame)) = self.acquire()? else { return Ok(()) };
         self.advance();
+        self.follow()?;
         self.lay_out(&desc)?;
         let last = self.show.frames == Some(self.shown + 1) && self.show.last_picture;
         let picture = (last || std::mem::take(&mut self.input.picture)) && self.can_copy(&desc);
@@ -177,19 +186,18 @@ impl<'d> Viewer<'d> {
             self.compiled = None;
         }
         self.shot.ask(picture);
-        self.renderer.look(self.rig.camera());
+        self.stage.renderer.look(self.rig.camera());
         if self.compiled.is_none() {
             if settings.size != self.settings.size {
-                self.renderer.resize(settings.size)?;
+                self.stage.resize(settings.size)?;
             }
             self.settings = settings;
-            self.compiled = Some(self.renderer.compile(&settings, TIMED_FRAMES, false)?);
+            self.compiled = Some(self.stage.renderer.compile(&settings, TIMED_FRAMES, false)?);
         }
         if let Some(compiled) = &self.compiled {
             let turn = self.controls.rotation() * settings.turn;
-            self.renderer.turn(&compiled.turning, &settings, turn)?;
-            let walked = self.first.map_or(0.0, |first| first.elapsed().as_secs_f64());
-            self.renderer.move_to(settings.time + walked)?;
+            self.stage.renderer.turn(&compiled.turning, &settings, turn)?;
+            self.stage.renderer.move_to(self.seconds())?;
         }
         Ok(())
     }
@@ -240,45 +248,58 @@ impl<'d> Viewer<'d> {
         }
     }
 
-    /// Lays out the panel, which may change what is drawn.
-    fn lay_out(&mut self, desc: &ImageDesc) -> Outcome {
-        let Some(window) = &self.window else { return Ok(()) };
-        let interface = match &mut self.interface {
-            Some(interface) => interface,
-            None => {
-                let interface = Interface::new(self.device, window.window(), desc.format)?;
-                let (painter, shot) = (interface.painter().clone(), self.shot.clone());
-                self.renderer.draw_over(Arc::new(move |graph, window| {
-                    let window = painter.add(graph, window);
-                    shot.add(graph, window);
-                }));
-                self.interface.insert(interface)
+    /// Makes anew what was asked for, and what shaders have changed.
+    fn follow(&mut self) -> Outcome {
+        if let Some(found) = self.show.watch.as_mut().and_then(Watch::look) {
+            let (before, told) = match found {
+                Ok(modules) => {
+                    let names: Vec<String> = modules.keys().cloned().collect();
+                    let mut all = shaders::replace(shaders::Modules::new());
+                    let before = all.clone();
+                    all.extend(modules);
+                    shaders::replace(all);
+                    (Some(before), Ok(format!("drawn with {}", names.join(", "))))
+                }
+                Err(why) => (None, Err(why)),
+            };
+            self.status = told;
+            if let Some(before) = before {
+                match self.stage.reload() {
+                    Ok(()) => self.compiled = None,
+                    Err(failure) => {
+                        shaders::replace(before);
+                        self.status = Err(format!("{failure}; the last good shaders stay"));
+                    }
+                }
             }
-        };
-        let plan = self.compiled.as_ref().map(|compiled| compiled.execution.plan());
-        let left_out = plan.map_or(Vec::new(), |plan| plan.left_out().to_vec());
-        let told = Told {
-            device: &self.name,
-            rate: self.told.map_or(0.0, |(.., rate)| rate),
-            size: [desc.extent[0], desc.extent[1]],
-            times: &self.times,
-            left_out: &left_out,
-            status: &self.status,
-        };
-        let (controls, places) = (&mut self.controls, &mut self.places);
-        let mut asked = panel::Asked::default();
-        interface.run(window.window(), |context| asked = panel::show(context, controls, &told, places));
-        self.input.picture |= asked.picture;
-        if asked.home {
-            self.act(Action::Home);
+        }
+        let done = self.stage.follow(&mut self.wish);
+        if done.anew {
+            self.compiled = None;
+            self.samples = None;
+        }
+        if done.other {
+            self.show.camera = self.stage.scene().camera();
+            self.rig = Rig::new(self.show.camera.clone(), self.stage.middle());
+            let settings = Settings { window: None, ..self.settings };
+            let stated = self.stage.scene().exposure;
+            self.show.start.exposure = self.stage.renderer.exposure(None, stated, &settings)?;
+        }
+        if let Some(status) = done.status {
+            self.status = status;
         }
         Ok(())
+    }
+
+    /// Seconds after the scene's time 0.
+    pub(super) fn seconds(&self) -> f64 {
+        self.show.start.time + self.controls.walked
     }
 
     fn can_copy(&mut self, desc: &ImageDesc) -> bool {
         let can = shot::can_copy(desc);
         if !can {
-            self.status = "this window cannot be copied; use airglow render".to_owned();
+            self.status = Err("this window cannot be copied; use airglow render".to_owned());
         }
         can
     }
@@ -286,15 +307,19 @@ impl<'d> Viewer<'d> {
     fn write_picture(&mut self, desc: &ImageDesc) -> Outcome {
         self.frames.finish().map_err(Failure::work)?;
         self.shot.write(desc, &self.show.picture)?;
-        self.status = format!("{} written", self.show.picture.display());
+        self.status = Ok(format!("{} written", self.show.picture.display()));
         self.compiled = None;
         Ok(())
     }
 
-    fn act(&mut self, action: Action) {
+    pub(super) fn act(&mut self, action: Action) {
         self.controls.act(action);
         match action {
-            Action::Home => self.rig.reset(),
+            Action::Home => {
+                self.rig.reset();
+                self.stage.home();
+                self.compiled = None;
+            }
             Action::Picture => self.input.picture = true,
             _ => {}
         }
@@ -338,6 +363,10 @@ impl ApplicationHandler for Viewer<'_> {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
             WindowEvent::Resized(_) => self.stale = true,
             WindowEvent::Occluded(hidden) => self.hidden = hidden,
+            WindowEvent::DroppedFile(ref file) => match Load::of_file(file) {
+                Ok(load) => self.stage.load(load),
+                Err(why) => self.status = Err(why),
+            },
             WindowEvent::RedrawRequested if !event_loop.exiting() => {
                 let outcome = self.draw();
                 self.unless_failed(event_loop, outcome);
