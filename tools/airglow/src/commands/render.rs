@@ -125,13 +125,13 @@ pub struct Arguments {
     /// are not finite, and negative ones; pixels that fog cannot use; light, visibility and lobes that are not finite.
     #[arg(long)]
     health: bool,
+    /// Have what a frame makes for itself hand memory on: the same picture from fewer bytes, which --stat counts.
+    #[arg(long)]
+    share_transients: bool,
     /// Draw what a pass holds or decides, in false colours with a legend, instead of the picture; an .exr gets the numbers.
     /// `list` names all views.
     #[arg(long, value_name = "VIEW", conflicts_with_all = ["split", "views", "passes", "reference", "stat", "trace"])]
     debug: Option<String>,
-    /// Have what a frame makes for itself hand memory on: the same picture from fewer bytes, which --stat counts.
-    #[arg(long)]
-    share_transients: bool,
     /// Write the frames after warm-up on a time line here, CPU and GPU, as a trace for ui.perfetto.dev.
     #[arg(long, value_name = "FILE.json")]
     trace: Option<PathBuf>,

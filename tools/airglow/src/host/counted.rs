@@ -1,10 +1,10 @@
 //! What the passes count while they work, where a host asks for it: `render --health`.
 
-#[cfg(any(feature = "radiance", feature = "shadow"))]
-use airglow_gpu::{Imports, Look, Record};
 use airglow_gpu::Health;
 #[cfg(any(feature = "radiance", feature = "shadow", feature = "normals"))]
 use airglow_gpu::Tally;
+#[cfg(any(feature = "radiance", feature = "shadow"))]
+use airglow_gpu::{Imports, Look, Record};
 #[cfg(any(feature = "radiance", feature = "shadow"))]
 use airglow_graph::{Buffer, Graph, Handle};
 
@@ -12,9 +12,9 @@ use airglow_graph::{Buffer, Graph, Handle};
 use super::device::Device;
 use super::lighting::Lighting;
 use super::renderer::Renderer;
-use crate::failure::Outcome;
 #[cfg(any(feature = "fog", feature = "radiance", feature = "shadow", feature = "normals"))]
 use crate::failure::Failure;
+use crate::failure::Outcome;
 use crate::measure::health;
 
 /// Counters of the rooms that have their buffers looked at; none where nothing is counted.

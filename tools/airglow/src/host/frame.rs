@@ -243,9 +243,9 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
         imports,
         turning: Turning {
             rotations,
-            #[cfg(feature = "radiance")]
             #[cfg(feature = "normals")]
             incident: incident_rotations,
+            #[cfg(feature = "radiance")]
             near,
             views,
             #[cfg(feature = "shadow")]

@@ -77,10 +77,10 @@ pub mod spheres;
 pub mod split;
 #[cfg(all(feature = "relight", any(feature = "fog", feature = "radiance", feature = "shadow")))]
 pub mod strip;
-pub mod texture;
-pub mod transfer;
 #[cfg(feature = "relight")]
 pub mod surface;
+pub mod texture;
+pub mod transfer;
 pub mod truth;
 pub mod unread;
 pub mod upload;

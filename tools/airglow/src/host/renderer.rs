@@ -165,7 +165,10 @@ impl<'d> Renderer<'d> {
         let (mapped, about_maps) = (maps.fragments(scene, fogged.is_some()), maps.left_out);
         #[cfg(not(feature = "normals"))]
         let (mapped, about_maps) = (Vec::new(), Vec::new());
-        #[cfg_attr(not(feature = "normals"), expect(unused_mut, reason = "without the room nothing is counted yet"))]
+        #[cfg_attr(
+            not(feature = "normals"),
+            expect(unused_mut, reason = "without the room nothing is counted yet")
+        )]
         let mut counters = Counters::default();
         #[cfg(feature = "normals")]
         {
@@ -313,8 +316,7 @@ impl<'d> Renderer<'d> {
             true => Some(timing.and_then(Timing::with_pipeline_statistics).map_err(Failure::device)?),
             false => timing.ok(),
         };
-        let prepare =
-            if settings.share_transients { Execution::prepare_shared } else { Execution::prepare };
+        let prepare = if settings.share_transients { Execution::prepare_shared } else { Execution::prepare };
         let execution = prepare(context, plan).map_err(Failure::work)?;
         Ok(Compiled { execution, imports, timing, turning })
     }
