@@ -4,11 +4,11 @@ use clap::{Args, Parser, Subcommand};
 
 #[cfg(all(feature = "normals", feature = "relight"))]
 use crate::commands::maps;
+#[cfg(feature = "view")]
+use crate::commands::view;
 use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
 use crate::commands::{eval, explain, plan, render, report, stability};
-#[cfg(feature = "view")]
-use crate::commands::view;
 #[cfg(all(feature = "relight", feature = "shadow"))]
 use crate::commands::{film, spheres};
 

@@ -245,7 +245,8 @@ mod tests {
         let text =
             "# All.\n\n# Fog.\n[[entry]]\nfile = \"fog/a.comp\"\n\n[[entry]]\nfile = \"foggy/a.comp\"\n";
         assert_eq!(remove(Place::Shaders, text, "fog"), "# All.\n\n[[entry]]\nfile = \"foggy/a.comp\"\n");
-        let text = "[[entry]]\nfile = \"rain/wet.frag\"\nname = \"drops\"\n[entry.define]\nAIRGLOW_FOG = true\n";
+        let text =
+            "[[entry]]\nfile = \"rain/wet.frag\"\nname = \"drops\"\n[entry.define]\nAIRGLOW_FOG = true\n";
         assert_eq!(remove(Place::Shaders, text, "fog"), "\n");
         assert_eq!(shared_shaders(text, "fog"), [("rain/wet.frag".to_owned(), "drops".to_owned())]);
         assert!(shared_shaders(text, "rain").is_empty());

@@ -14,9 +14,9 @@ pub mod ball;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod complete;
 #[cfg(feature = "relight")]
-pub mod debug;
-#[cfg(feature = "relight")]
 pub mod counted;
+#[cfg(feature = "relight")]
+pub mod debug;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
 pub mod device;

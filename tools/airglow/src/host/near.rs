@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use airglow::math::sh::rotation::Rotation;
 use airglow::math::sphere::equirect::Projector;
-use airglow::radiance::gpu::{Atlas, RefineState};
 use airglow::radiance::gpu::bench::Bench;
+use airglow::radiance::gpu::{Atlas, RefineState};
 use airglow::radiance::{
     Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Sphere, Triangle,
 };

@@ -42,7 +42,8 @@ impl Measurement<'_> {
                 / 3;
         let mut points = Vec::new();
         for (steps, milliseconds) in STEPS.into_iter().zip(times) {
-            let error = Errors { model: Some(error(&bench, &map.normals, &settings(steps))?), ..Errors::default() };
+            let error =
+                Errors { model: Some(error(&bench, &map.normals, &settings(steps))?), ..Errors::default() };
             let counts = Default::default();
             let setting = format!("{steps} steps");
             points.push(Point { setting, milliseconds, memory, counts, error, distribution: None });
