@@ -70,5 +70,5 @@ void main()
     results.rows[i].encoded = srgb_encode(display);
     results.rows[i].decoded = srgb_decode(results.rows[i].encoded);
     results.rows[i].false_colour = false_colour(direction.x, -0.8, 0.8);
-    results.rows[i].not_a_number = false_colour(uintBitsToFloat(0x7fc00000u)).r;
+    results.rows[i].not_a_number = false_colour(uintBitsToFloat(0x7fc00000u | floatBitsToUint(direction.x))).r;
 }
