@@ -3,8 +3,8 @@
 #![cfg(feature = "relight")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
-mod debug;
 mod counts;
+mod debug;
 mod explain;
 mod fog;
 mod instruments;
