@@ -3,6 +3,7 @@
 #![cfg(feature = "relight")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests stop at the first surprise")]
 
+mod composition;
 mod counts;
 mod debug;
 mod explain;
