@@ -74,12 +74,12 @@ impl Handle {
                     emitter.center = moved(emitter.center);
                 }
             }
-            What::Light(index) => match scene.lights.get_mut(index).map(|light| &mut light.kind) {
-                Some(LightKind::Point { position, .. } | LightKind::Spot { position, .. }) => {
+            What::Light(index) => {
+                let kind = scene.lights.get_mut(index).map(|light| &mut light.kind);
+                if let Some(LightKind::Point { position, .. } | LightKind::Spot { position, .. }) = kind {
                     *position = moved(*position);
                 }
-                _ => {}
-            },
+            }
             What::Figure(index) => {
                 let Some(root) = scene.figures.get(index).map(|figure| figure.root) else { return };
                 match scene.nodes.get_mut(root).map(|node| &mut node.local) {
