@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use airglow_scene::image_io::{write_exr, write_png_bytes};
 use airglow_scene::{Scene, tone};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DQuat;
 
 use crate::cli::Global;
@@ -139,7 +139,7 @@ pub struct Arguments {
 
 /// Where the complete model is evaluated.
 #[cfg(feature = "fog")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum CompleteName {
     /// At each pixel.
     Pixels,

@@ -43,6 +43,10 @@ impl Without {
     }
 
     /// What the passes that stay need of a scene.
+    #[cfg_attr(
+        not(any(feature = "shadow", feature = "radiance", feature = "normals")),
+        expect(unused_mut, reason = "the passes that stay need all of it")
+    )]
     pub fn scene(&self, mut scene: Scene) -> Scene {
         #[cfg(feature = "shadow")]
         if self.has(PassName::Shadow) {

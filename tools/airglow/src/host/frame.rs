@@ -50,6 +50,7 @@ pub struct Turning {
     #[cfg(feature = "fog")]
     pub fog: Vec<airglow::fog::Control>,
     /// The image of the window, another one in each frame; `None` without a window.
+    #[cfg_attr(not(feature = "view"), expect(dead_code, reason = "there is no window"))]
     pub window: Option<Handle<Image>>,
 }
 

@@ -103,6 +103,10 @@ impl Renderer<'_> {
     }
 
     /// Centre and radius, metres, of the spheres that cast shadows `seconds` after the scene's time 0.
+    #[cfg_attr(
+        not(feature = "shadow"),
+        expect(unused_variables, reason = "nothing moves that casts shadows")
+    )]
     pub fn blockers(&self, seconds: f64) -> Vec<(Vec3, f32)> {
         #[cfg(feature = "shadow")]
         if let Lighting::Relight(lit) = &self.lighting

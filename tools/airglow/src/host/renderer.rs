@@ -63,6 +63,10 @@ pub struct Renderer<'d> {
     /// What the pass takes in a frame, where that was measured.
     pub(super) relight_seconds: Option<f64>,
     /// What passes count, where they do.
+    #[cfg_attr(
+        not(any(feature = "radiance", feature = "shadow", feature = "normals")),
+        expect(dead_code, reason = "no pass of its own counts")
+    )]
     pub(super) counters: Counters,
     pub(super) linear: Buffer,
     pub(super) display: Buffer,
@@ -224,6 +228,7 @@ impl<'d> Renderer<'d> {
     }
 
     /// Looks through another camera from the next turn on.
+    #[cfg(any(feature = "view", feature = "shadow", feature = "normals"))]
     pub fn look(&mut self, camera: Camera) {
         self.camera = camera;
     }

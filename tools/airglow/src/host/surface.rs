@@ -32,7 +32,6 @@ pub enum Inputs {
     /// Tangent as well: the surface has a normal map.
     Mapped,
     /// And so many bytes of coefficients of the radiance that meets the vertex.
-    #[cfg(feature = "normals")]
     Incident(u32),
 }
 
@@ -40,7 +39,6 @@ impl Inputs {
     /// Bytes of the coefficients.
     fn incident(self) -> Option<u32> {
         match self {
-            #[cfg(feature = "normals")]
             Self::Incident(bytes) => Some(bytes),
             _ => None,
         }

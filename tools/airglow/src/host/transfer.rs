@@ -44,7 +44,10 @@ pub struct InstanceTransfer {
     /// Whether that space is mirrored through its origin before it is turned.
     pub inverted: bool,
     /// Whether the transfer is in world space.
-    #[cfg_attr(not(feature = "shadow"), expect(dead_code, reason = "only shadows ask"))]
+    #[cfg_attr(
+        not(any(feature = "shadow", feature = "normals")),
+        expect(dead_code, reason = "only shadows and normal maps ask")
+    )]
     pub in_world: bool,
     /// Whether the instance moves by itself: then it is lit by its normals, and no transfer is baked.
     pub moves: bool,

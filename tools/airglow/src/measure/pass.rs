@@ -45,6 +45,7 @@ struct Time {
 }
 
 /// The passes of some frames by their times alone; none with too few frames.
+#[cfg(feature = "view")]
 pub fn timed(timing: Option<&TimingSummary>) -> Vec<PassStat> {
     timing.map_or(Vec::new(), |timing| timing.passes.iter().map(PassStat::timed).collect())
 }

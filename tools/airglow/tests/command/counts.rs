@@ -12,7 +12,7 @@ pub fn lines(title: &str, counts: &Value) -> String {
 }
 
 /// Counts of every pass and of every health counter under a title.
-#[cfg(any(feature = "fog", feature = "radiance", feature = "normals", feature = "shadow"))]
+#[cfg(all(feature = "fog", any(feature = "shadow", all(feature = "radiance", feature = "normals"))))]
 pub fn counts(title: &str, stat: &Value) -> String {
     let mut text = format!("{title}\n");
     for pass in stat["passes"].as_array().into_iter().flatten() {

@@ -77,9 +77,8 @@ fn a_reader_that_leaves_is_no_failure() {
 #[test]
 fn help_has_the_options_of_the_command_before_those_of_all() {
     let folder = tempfile::tempdir().unwrap();
-    for command in
-        ["devices", "bake", "render", "show", "compare", "plan", "report", "stability", "explain", "eval"]
-    {
+    let always = ["devices", "bake", "render", "compare", "plan", "report", "stability", "explain", "eval"];
+    for command in always.into_iter().chain(cfg!(feature = "view").then_some("view")) {
         let help = succeeds(folder.path(), &[command, "--help"]);
         let (own, global) = help.split_once("Global options:").unwrap();
         for option in ["--device", "--validate", "--quiet", "--json"] {

@@ -26,6 +26,7 @@ pub struct Stages {
 
 /// A frame that can be run and timed.
 struct Running<'d> {
+    #[cfg_attr(not(feature = "radiance"), expect(dead_code, reason = "what the frame reads lives in it"))]
     renderer: Renderer<'d>,
     execution: Execution,
     imports: Imports,
