@@ -38,10 +38,7 @@ fn blinn_phong(lobe: &Lobe, exponent: f64, light: DVec3, half: DVec3) -> f64 {
     if cosine <= 0.0 {
         return 0.0;
     }
-    // Within 3e-3 of log(1 - x) + x where the power is not yet nothing, times exponents from 4 on.
-    let x = 1.0 - cosine;
-    let bend = -x * x * (0.5 - x * (0.095_734 + 0.156_041 * x)) / (1.0 - 0.929_872 * x);
-    let height = (exponent * bend + x).exp();
+    let height = (exponent * cosine.ln() + sharpness * (1.0 - cosine)).exp();
     (exponent + 8.0) / (8.0 * PI) * height * integral * product.clamped_cosine(light)
 }
 

@@ -146,39 +146,18 @@ float normals_lambert(vec4 stored, vec3 light)
     return stored.w * normals_clamped_cosine(stored, light) / PI;
 }
 
-// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis, and
-// normals_times, written with shares of the two concentrations instead of these: `x` is 1 - cosine of the product's axis and
-// the half vector, `width` one over its concentration, `mean` its mean length, as broad as 0.6. A rational function takes the
-// place of log(1 - x) + x, a series that of 2 / (1 + sqrt(1 - u)).
+// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis.
 float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
 {
     float sharpness = exponent + 1.0;
-    float squared = max(dot(stored.xyz, stored.xyz), 1e-30);
-    float inverse = inversesqrt(squared);
-    vec3 axis = stored.xyz * inverse;
-    float r = min(squared * inverse / max(stored.w, 1e-30), 1.0);
-    float missing = max(1.0 - r, 1e-7);
-    float scaled = r * normals_concentration_ratio(r, missing); // the lobe's concentration times `missing`
-    float both = 1.0 / (scaled + sharpness * missing);
-    float own = scaled * both;
-    float other = sharpness * missing * both;
-    float apart = normals_versine(axis, half_vector);
-    float u = 2.0 * own * other * apart;
-    float longer = inversesqrt(max(1.0 - u, 1e-4));
-    float x = clamp(1.0 - (1.0 - own * apart) * longer, 0.0, 1.0);
-    float height = x - exponent * x * x * (0.5 - x * (0.095734 + 0.156041 * x)) / (1.0 - 0.929872 * x);
-    float fall = sharpness * own * apart * (1.0 + u * (0.25 + u * (0.125 + 0.09 * u)));
-    float width = missing * both * longer;
-    float broad = min(width, 0.6);
-    broad *= broad;
-    broad *= broad;
-    float integral = (0.5 - 0.15 * broad) * (missing + scaled * (1.0 + r)) * both * longer * exp(height - fall);
-    float mean = max(1.0 - width + 0.6 * broad, 0.0);
-    float cosine = (own * dot(axis, light) + other * dot(half_vector, light)) * longer;
-    float variance = max(width * (mean - cosine * cosine * (1.0 - 2.0 * width)), 1e-14);
-    float over = inversesqrt(variance);
-    float arriving = normals_rectified(mean * cosine, variance * over, over);
-    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * arriving;
+    NormalsLobe lobe = normals_lobe(stored);
+    NormalsProduct product = normals_times(lobe, sharpness, normals_versine(lobe.axis, half_vector));
+    float x = product.apart;
+    float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * x;
+    float integral = product.factor * exp(product.exponent + height);
+    float cosine = product.own * dot(lobe.axis, light) + product.other * dot(half_vector, light);
+    cosine = normals_clamped_cosine(product.mean / product.concentration, product.mean, cosine);
+    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * cosine;
 }
 
 #endif
