@@ -19,7 +19,9 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, ArraySize, Handle, ImageClass, ShaderStage, Type, TypeInner};
 
 /// What shipped shaders may ask of naga beyond the portable core: push constants, and halves in 32-bit words.
-const CAPABILITIES: Capabilities = Capabilities::IMMEDIATES.union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+const CAPABILITIES: Capabilities = Capabilities::IMMEDIATES
+    .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+    .union(Capabilities::CLIP_DISTANCES);
 
 /// Why a module could not be reflected.
 #[derive(Debug, thiserror::Error)]

@@ -7,7 +7,9 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, Module};
 
 /// What shipped shaders may ask of naga beyond the portable core: push constants, and halves in 32-bit words.
-const CAPABILITIES: Capabilities = Capabilities::IMMEDIATES.union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+const CAPABILITIES: Capabilities = Capabilities::IMMEDIATES
+    .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+    .union(Capabilities::CLIP_DISTANCES);
 
 /// The languages, in the order of [`translate`]'s answers. Their versions are those of [`to_hlsl`] and [`to_msl`].
 pub const LANGUAGES: [&str; 3] = ["WGSL", "HLSL 6.0", "MSL 2.4"];
