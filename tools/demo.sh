@@ -22,7 +22,7 @@ while [ $# -gt 0 ]; do
 done
 
 say "demo of airglow: build, bake, draw, measure"
-echo "Expect 7 to 12 minutes on two cores the first time, most of it building; about 4 minutes after that."
+echo "Expect 10 to 20 minutes on two cores the first time, half of it building."
 
 require_toolchain
 packages=(libvulkan1)
