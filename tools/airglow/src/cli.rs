@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 
 #[cfg(all(feature = "normals", feature = "relight"))]
 use crate::commands::maps;
-#[cfg(feature = "view")]
+#[cfg(all(feature = "view", feature = "relight"))]
 use crate::commands::view;
 use crate::commands::{bake, compare, devices, requirements};
 #[cfg(feature = "relight")]
@@ -66,7 +66,7 @@ pub enum Command {
     Bake(bake::Arguments),
     #[cfg(feature = "relight")]
     Render(render::Arguments),
-    #[cfg(feature = "view")]
+    #[cfg(all(feature = "view", feature = "relight"))]
     View(view::Arguments),
     #[cfg(all(feature = "relight", feature = "shadow"))]
     Film(film::Arguments),

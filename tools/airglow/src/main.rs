@@ -19,7 +19,7 @@ mod host;
 mod measure;
 mod output;
 mod report;
-#[cfg(feature = "view")]
+#[cfg(all(feature = "view", feature = "relight"))]
 mod window;
 
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! The window as its users see it, on a virtual X11 display: its pixels, its size, its keys, its ends.
 
-#![cfg(all(feature = "view", target_os = "linux"))]
+#![cfg(all(feature = "view", feature = "relight", target_os = "linux"))]
 #![expect(clippy::unwrap_used, clippy::panic, reason = "helpers of tests stop at the first surprise")]
 
 use std::io::{BufRead, BufReader};

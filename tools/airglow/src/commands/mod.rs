@@ -29,7 +29,7 @@ pub mod scene;
 pub mod spheres;
 #[cfg(feature = "relight")]
 pub mod stability;
-#[cfg(feature = "view")]
+#[cfg(all(feature = "view", feature = "relight"))]
 pub mod view;
 #[cfg(feature = "relight")]
 pub mod what_if;
@@ -49,7 +49,7 @@ pub fn run(cli: Cli, output: &Output) -> Outcome {
         Command::Bake(arguments) => bake::run(&arguments, output),
         #[cfg(feature = "relight")]
         Command::Render(arguments) => render::run(&arguments, global, output),
-        #[cfg(feature = "view")]
+        #[cfg(all(feature = "view", feature = "relight"))]
         Command::View(arguments) => view::run(&arguments, global, output),
         #[cfg(all(feature = "relight", feature = "shadow"))]
         Command::Film(arguments) => film::run(&arguments, global, output),

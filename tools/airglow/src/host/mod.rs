@@ -54,7 +54,7 @@ pub mod near_tree;
 pub mod over;
 #[cfg(feature = "relight")]
 pub mod permutations;
-#[cfg(feature = "view")]
+#[cfg(all(feature = "view", feature = "relight"))]
 pub mod remake;
 #[cfg(feature = "relight")]
 pub mod renderer;
