@@ -1,6 +1,5 @@
 //! Where device memory comes from: a small trait a host can implement, and a default behind it.
 
-use crate::functions::Functions;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan as sub;
@@ -75,11 +74,15 @@ pub struct BlockAllocator {
 }
 
 impl BlockAllocator {
-    /// An allocator for the device whose functions are given.
-    pub(crate) fn new(functions: &Functions, physical_device: vk::PhysicalDevice) -> Result<Self, String> {
+    /// An allocator for `device`.
+    pub(crate) fn new(
+        instance: &ash::Instance,
+        device: &ash::Device,
+        physical_device: vk::PhysicalDevice,
+    ) -> Result<Self, String> {
         let inner = sub::Allocator::new(&sub::AllocatorCreateDesc {
-            instance: functions.instance.clone(),
-            device: functions.device.clone(),
+            instance: instance.clone(),
+            device: device.clone(),
             physical_device,
             debug_settings: Default::default(),
             buffer_device_address: false,

@@ -4,10 +4,8 @@
 //! before each write, so that a step's number says that all steps before it are done.
 
 use crate::allocator::Location;
-use crate::context::Context;
 use crate::error::GpuError;
-use crate::memory::{Buffer, Label};
-use crate::recorder::Recorder;
+use crate::memory::{Buffer, BufferSlice, Label};
 use crate::shared::{Shared, lock};
 use airglow_graph::BufferDesc;
 use ash::vk;
@@ -66,8 +64,20 @@ impl Breadcrumbs {
         Ok(())
     }
 
+    /// The number to write before the next step of `frame`, which is called `name`; the one after it is the next.
+    pub(crate) fn next(&self, frame: u64, name: &str) -> u32 {
+        let mut trail = lock(&self.trails[self.slot(frame)]);
+        trail.names.push(name.to_owned());
+        2 * trail.names.len() as u32 - 1
+    }
+
+    /// Where the numbers of `frame` are written.
+    pub(crate) fn word(&self, frame: u64) -> Result<BufferSlice, GpuError> {
+        self.words.slice(4 * self.slot(frame) as u64, 4)
+    }
+
     /// The newest frame's number, as a name.
-    fn last(&self) -> Result<Option<PassReached>, GpuError> {
+    pub(crate) fn last(&self) -> Result<Option<PassReached>, GpuError> {
         let words = self.words.read::<u32>(0, self.trails.len())?;
         let reached = words.iter().zip(&self.trails).filter_map(|(&word, trail)| {
             let trail = lock(trail);
@@ -76,65 +86,5 @@ impl Breadcrumbs {
             Some(PassReached { frame: trail.frame, pass, finished: step % 2 == 1 })
         });
         Ok(reached.max_by_key(|reached| reached.frame))
-    }
-}
-
-impl Context {
-    /// The last step the device reached, by the breadcrumbs it wrote: for after a loss. `None` without
-    /// [`Options::breadcrumbs`](crate::Options::breadcrumbs), or when no step of the frames in flight was begun.
-    ///
-    /// # Errors
-    /// None in practice: the breadcrumbs are mapped.
-    pub fn last_pass_reached(&self) -> Result<Option<PassReached>, GpuError> {
-        self.breadcrumbs.as_ref().map_or(Ok(None), Breadcrumbs::last)
-    }
-}
-
-impl Recorder<'_> {
-    /// Writes the number of a new step called `name`; the result is the number to write after it.
-    pub(crate) fn begin_crumb(&mut self, name: &str) -> Result<Option<u32>, GpuError> {
-        let Some(crumbs) = &self.context().breadcrumbs else { return Ok(None) };
-        if self.outside_rendering("a breadcrumb").is_err() {
-            return Ok(None);
-        }
-        let number = {
-            let mut trail = lock(&crumbs.trails[crumbs.slot(self.context().frame())]);
-            trail.names.push(name.to_owned());
-            2 * trail.names.len() as u32 - 1
-        };
-        self.write_crumb(crumbs, number)?;
-        Ok(Some(number + 1))
-    }
-
-    /// Writes the number that [`Recorder::begin_crumb`] returned.
-    pub(crate) fn end_crumb(&mut self, number: Option<u32>) -> Result<(), GpuError> {
-        match (&self.context().breadcrumbs, number) {
-            (Some(crumbs), Some(number)) if self.outside_rendering("a breadcrumb").is_ok() => {
-                self.write_crumb(crumbs, number)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn write_crumb(&mut self, crumbs: &Breadcrumbs, number: u32) -> Result<(), GpuError> {
-        self.full_barrier();
-        let slot = crumbs.slot(self.context().frame());
-        self.fill(&crumbs.words.slice(4 * slot as u64, 4)?, number)?;
-        self.full_barrier();
-        Ok(())
-    }
-
-    /// Everything before is done, and visible to everything after and to the CPU.
-    fn full_barrier(&mut self) {
-        let barriers = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-            .dst_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS | vk::PipelineStageFlags2::HOST)
-            .dst_access_mask(
-                vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE | vk::AccessFlags2::HOST_READ,
-            )];
-        let info = vk::DependencyInfo::default().memory_barriers(&barriers);
-        // SAFETY: a recording command buffer outside rendering.
-        unsafe { self.context().device().cmd_pipeline_barrier2(self.command_buffer(), &info) };
     }
 }

@@ -9,9 +9,6 @@ use crate::error::GpuError;
 use ash::vk;
 use std::time::{Duration, Instant};
 
-/// Extensions that let a host read the device's clock, either of which serves, the newer first.
-pub(crate) const EXTENSIONS: [&str; 2] = ["VK_KHR_calibrated_timestamps", "VK_EXT_calibrated_timestamps"];
-
 /// How often the clocks are read for one calibration; the reading with the least uncertainty is kept.
 const READINGS: usize = 8;
 

@@ -1,7 +1,5 @@
 //! Raw timestamps as seconds.
 
-use crate::timing::FrameTimes;
-
 /// The bits of a timestamp that mean something.
 pub(crate) fn mask(valid_bits: u32) -> u64 {
     u64::MAX.checked_shr(64 - valid_bits.min(64)).unwrap_or(0)
@@ -17,22 +15,9 @@ pub(crate) struct Clock {
 impl Clock {
     /// From one raw value to a later one; the counter may have wrapped once. A step back of up to half the range,
     /// which overlapping queues can show, is no time at all.
-    fn seconds(&self, from: u64, to: u64) -> f64 {
+    pub(crate) fn seconds(&self, from: u64, to: u64) -> f64 {
         let ticks = to.wrapping_sub(from) & self.mask;
         if ticks > self.mask / 2 { 0.0 } else { ticks as f64 * self.period }
-    }
-
-    /// Turns begin and end of each pass into times.
-    pub(crate) fn fill(&self, results: &[[u64; 2]], times: &mut FrameTimes) {
-        let pairs = || results.chunks_exact(2).map(|pair| (pair[0][0], pair[1][0]));
-        let start = results.first().map_or(0, |first| first[0] & self.mask);
-        times.start = start;
-        times.passes.clear();
-        times.passes.extend(pairs().map(|(begin, end)| self.seconds(begin, end)));
-        times.begins.clear();
-        times.begins.extend(pairs().map(|(begin, _)| self.seconds(start, begin)));
-        times.sum = times.passes.iter().sum();
-        times.span = pairs().map(|(_, end)| self.seconds(start, end)).fold(0.0, f64::max);
     }
 }
 
@@ -52,24 +37,6 @@ pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn wrapped_counters_and_overlap_give_true_times() {
-        let clock = Clock { mask: mask(36), period: 1e-9 };
-        let near_end = (1 << 36) - 100;
-        let results = [[near_end, 1], [900, 1], [400, 1], [1400, 1]];
-        let mut times = FrameTimes::default();
-        clock.fill(&results, &mut times);
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} against {b}");
-        near(times.passes[0], 1000e-9);
-        near(times.passes[1], 1000e-9);
-        near(times.begins[1], 500e-9);
-        assert_eq!((times.start, times.begins[0]), (near_end, 0.0));
-        near(times.sum, 2000e-9);
-        near(times.span, 1500e-9);
-        near(clock.seconds(500, 499), 0.0);
-        assert_eq!((mask(64), mask(0), mask(1)), (u64::MAX, 0, 1));
-    }
 
     #[test]
     fn medians_of_even_and_odd_counts() {

@@ -1,53 +1,19 @@
 //! The library's side of a host's device: what `adopt` makes of raw handles.
 
-use crate::allocator::{Allocator, BlockAllocator};
-use crate::breadcrumbs::Breadcrumbs;
+use crate::adopt::AdoptInfo;
+use crate::allocator::BlockAllocator;
+use crate::breadcrumbs::{Breadcrumbs, PassReached};
 use crate::error::GpuError;
 use crate::feature::FeatureSet;
 use crate::frame::FrameSlot;
 use crate::functions;
-use crate::memory::OwnerBytes;
+use crate::ledger::OwnerBytes;
 use crate::offer::Offer;
-use crate::options::Options;
 use crate::requirements::Requirements;
 use crate::shared::{DeviceFacts, Shared, lock};
 use ash::vk;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
-
-/// A device as its host states it.
-///
-/// A host on another version of ash, or on none, makes the handles with `vk::Handle::from_raw`.
-pub struct AdoptInfo<'a> {
-    /// The loader's function, or the host's own in front of it.
-    pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
-    /// The device's function; `None` asks the instance for it.
-    pub get_device_proc_addr: Option<vk::PFN_vkGetDeviceProcAddr>,
-    /// The instance.
-    pub instance: vk::Instance,
-    /// API version the instance was created for.
-    pub api_version: u32,
-    /// The physical device.
-    pub physical_device: vk::PhysicalDevice,
-    /// The device.
-    pub device: vk::Device,
-    /// Family of the queue that recorded commands will be submitted to.
-    pub queue_family: u32,
-    /// Features the host enabled; [`FeatureSet::of`] reads them from its structures.
-    pub features: FeatureSet,
-    /// Extensions the host enabled, of instance and device. `VK_EXT_debug_utils` among them turns on names and labels.
-    pub extensions: &'a [&'a str],
-    /// What the rooms in use ask for; [`Requirements::engine`] is added to it.
-    pub requirements: &'a Requirements,
-    /// The host's memory, or `None` for blocks of our own.
-    pub allocator: Option<Box<dyn Allocator>>,
-    /// The host's pipeline cache, or null.
-    pub pipeline_cache: vk::PipelineCache,
-    /// How many frames may be on the device or being recorded at once, at least 1.
-    pub frames_in_flight: u32,
-    /// Choices that no host has to make.
-    pub options: Options,
-}
 
 /// A host's device, seen from the library. Many can live in one process; there are no statics.
 ///
@@ -83,7 +49,7 @@ impl Context {
         let allocator = match info.allocator {
             Some(allocator) => allocator,
             None => Box::new(
-                BlockAllocator::new(&functions, info.physical_device)
+                BlockAllocator::new(&functions.instance, &functions.device, info.physical_device)
                     .map_err(|reason| GpuError::Memory { what: "the allocator".to_owned(), reason })?,
             ),
         };
@@ -167,6 +133,15 @@ impl Context {
     /// Bytes and objects by owner, sorted by name; what waits to be destroyed still counts.
     pub fn memory_report(&self) -> Vec<OwnerBytes> {
         self.shared.ledger().report()
+    }
+
+    /// The last step the device reached, by the breadcrumbs it wrote: for after a loss. `None` without
+    /// [`Options::breadcrumbs`](crate::Options::breadcrumbs), or when no step of the frames in flight was begun.
+    ///
+    /// # Errors
+    /// None in practice: the breadcrumbs are mapped.
+    pub fn last_pass_reached(&self) -> Result<Option<PassReached>, GpuError> {
+        self.breadcrumbs.as_ref().map_or(Ok(None), Breadcrumbs::last)
     }
 
     /// ash's device, for a host that uses it too.

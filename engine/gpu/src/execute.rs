@@ -5,15 +5,12 @@ use crate::counts::Counts;
 use crate::error::GpuError;
 use crate::memory::{Buffer, Image};
 use crate::recorder::Recorder;
-use crate::resources::{Concrete, Imports, Resources, check_imports};
+use crate::resources::{Concrete, Imports, Record, Resources, check_imports};
 use crate::timing::Timing;
 use crate::transients::{self, Transients};
 use airglow_graph::{Barriers, BufferBarrier, Handover, ImageBarrier, Plan, Sharing};
 use ash::vk;
 use std::time::{Duration, Instant};
-
-/// What a pass carries through the graph: the closure that records it.
-pub type Record = Box<dyn Fn(&mut Recorder<'_>, &Resources<'_>) -> Result<(), GpuError> + Send>;
 
 /// What a recording took.
 #[derive(Clone, Copy, Debug)]

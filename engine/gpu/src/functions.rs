@@ -6,9 +6,9 @@
 //! ash replaces a null pointer by a stub that panics when called. Every function this library calls is
 //! therefore asked for by name first, and a null one is an error that names it.
 
-use crate::calibration;
-use crate::context::AdoptInfo;
+use crate::adopt::AdoptInfo;
 use crate::error::GpuError;
+use crate::requirements::CALIBRATED_TIMESTAMPS;
 use ash::vk;
 use std::ffi::{CStr, c_char, c_void};
 
@@ -168,7 +168,7 @@ pub(crate) unsafe fn load(info: &AdoptInfo<'_>) -> Result<Functions, GpuError> {
     if debug_utils {
         probe(DEBUG, debug_address)?;
     }
-    let calibrated = calibration::EXTENSIONS.iter().any(|name| info.extensions.contains(name));
+    let calibrated = CALIBRATED_TIMESTAMPS.iter().any(|name| info.extensions.contains(name));
     let calibrated_timestamps = match calibrated {
         true => {
             probe(CALIBRATED, device_address)?;

@@ -3,9 +3,8 @@
 use crate::allocator::Location;
 use crate::context::Context;
 use crate::error::GpuError;
-use crate::execute::Record;
 use crate::memory::{Buffer, Image, Label};
-use crate::resources::{Concrete, Imports};
+use crate::resources::{Concrete, Imports, Record};
 use airglow_graph::{BufferDesc, ImageDesc, Plan, PlanHistory, ResourceDesc};
 use ash::vk;
 

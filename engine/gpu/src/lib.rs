@@ -5,12 +5,14 @@
 //! command buffer ([`Execution::record`]). Passes see only safe types: [`Recorder`], [`Resources`], [`Buffer`],
 //! [`Image`] and pipelines.
 
+mod adopt;
 mod allocator;
 mod breadcrumbs;
 mod calibration;
 mod clock;
 mod context;
 mod counts;
+mod create;
 mod error;
 mod execute;
 mod feature;
@@ -18,6 +20,7 @@ mod frame;
 mod functions;
 mod health;
 mod histories;
+mod ledger;
 mod memory;
 mod offer;
 #[cfg(feature = "open")]
@@ -37,18 +40,20 @@ mod tally;
 mod timing;
 mod transients;
 
+pub use adopt::AdoptInfo;
 pub use allocator::{Allocation, Allocator, BlockAllocator, Location, Request};
 pub use ash;
 pub use breadcrumbs::PassReached;
 pub use calibration::Calibration;
-pub use context::{AdoptInfo, Context};
+pub use context::Context;
 pub use counts::Counts;
 pub use error::GpuError;
-pub use execute::{Execution, Record, Recorded};
+pub use execute::{Execution, Recorded};
 pub use feature::{Feature, FeatureSet, FeatureStructs};
 pub use health::{Health, HealthCounts};
 pub use histories::Histories;
-pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, OwnerBytes, Sampler, SamplerDesc, ViewDesc};
+pub use ledger::OwnerBytes;
+pub use memory::{Buffer, BufferSlice, Image, ImageView, Label, Sampler, SamplerDesc, ViewDesc};
 pub use offer::{Missing, Offer};
 pub use options::{DeviceMask, Options};
 pub use patch::{FeatureStorage, patch_features};
@@ -60,6 +65,6 @@ pub use pipeline::{
 pub use readback::{Readback, texels};
 pub use recorder::{Binding, ColorAttachment, DepthAttachment, Load, Recorder, Rendering};
 pub use requirements::{FeatureNeed, Requirements};
-pub use resources::{Imports, Resources};
+pub use resources::{Imports, Record, Resources};
 pub use tally::{Counted, Look, Records, TALLY_BINDINGS, Tally};
 pub use timing::{FrameTimes, PassStatistics, PassTime, Timing, TimingSummary};

@@ -96,6 +96,43 @@ impl fmt::Display for Missing {
     }
 }
 
+impl Requirements {
+    /// Everything `offer` lacks; empty when it suffices. Optional features are never listed.
+    pub fn check(&self, offer: &Offer) -> Vec<Missing> {
+        let mut missing = Vec::new();
+        if offer.api_version < self.api_version {
+            missing.push(Missing::ApiVersion { needed: self.api_version, offered: offer.api_version });
+        }
+        if !offer.queue.contains(self.queue) {
+            missing.push(Missing::Queue { needed: self.queue, offered: offer.queue });
+        }
+        let features_below_1_3 = self.features.iter().filter(|need| need.required).filter_map(|need| {
+            let core = offer.api_version >= vk::API_VERSION_1_3;
+            need.feature.extension_before_1_3().filter(|_| !core)
+        });
+        let instance = self.instance_extensions.iter().filter(|need| need.required).map(|need| need.name);
+        let extensions = instance.chain(self.extensions.iter().copied()).chain(features_below_1_3);
+        let lacking = extensions.filter(|&name| !offer.extensions.iter().any(|have| have == name));
+        missing.extend(lacking.map(|name| Missing::Extension { name }));
+        let features =
+            self.features.iter().filter(|need| need.required && !offer.features.contains(need.feature));
+        missing.extend(features.map(|need| Missing::Feature { feature: need.feature, buys: need.buys }));
+        for need in &self.limits {
+            let offered = offer.limits.get(&need.limit).copied().unwrap_or(0);
+            if offered < need.at_least {
+                missing.push(Missing::Limit { need: need.clone(), offered });
+            }
+        }
+        for need in &self.formats {
+            let lacking = need.usage & !offer.formats.get(&need.format).copied().unwrap_or_default();
+            if !lacking.is_empty() {
+                missing.push(Missing::Format { format: need.format, lacking, why: need.why });
+            }
+        }
+        missing
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

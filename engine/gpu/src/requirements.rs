@@ -1,15 +1,16 @@
 //! What rooms ask of a device, as data, and the check that names what is missing.
 //!
 //! A host reads [`Requirements`] before it makes its device, and [`Requirements::check`] compares them with an
-//! [`Offer`]: what a physical device can do, or what the host has enabled on it. Neither makes a Vulkan call.
+//! [`Offer`](crate::Offer): what a physical device can do, or what the host has enabled on it. Neither makes a Vulkan call.
 
 mod json;
 
-use crate::calibration;
 use crate::feature::{Feature, FeatureSet};
-use crate::offer::{Missing, Offer};
-use crate::pipeline::{BindingDesc, BindingKind};
 use ash::vk;
+
+/// Extensions that let a host read the device's clock, either of which serves, the newer first.
+pub(crate) const CALIBRATED_TIMESTAMPS: [&str; 2] =
+    ["VK_KHR_calibrated_timestamps", "VK_EXT_calibrated_timestamps"];
 
 /// A feature some room needs or can use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -136,7 +137,7 @@ impl Requirements {
                 buys: "names of objects and labels of passes in captures and messages",
             }],
             extensions: Vec::new(),
-            optional_extensions: calibration::EXTENSIONS
+            optional_extensions: CALIBRATED_TIMESTAMPS
                 .map(|name| ExtensionNeed {
                     name,
                     required: false,
@@ -207,28 +208,8 @@ impl Requirements {
         self
     }
 
-    /// Asks for room for the descriptors of a pipeline with `bindings`, all of them seen by one stage.
-    #[must_use]
-    pub fn with_descriptors(self, bindings: &[BindingDesc]) -> Self {
-        let count = |kind| bindings.iter().filter(|binding| binding.kind == kind).count() as u64;
-        let floor = |(kind, limit)| match count(kind) {
-            0 => None,
-            at_least => Some(LimitNeed { limit, at_least, why: "descriptors of one pipeline" }),
-        };
-        let kinds = [
-            (BindingKind::StorageBuffer, Limit::PerStageStorageBuffers),
-            (BindingKind::UniformBuffer, Limit::PerStageUniformBuffers),
-            (BindingKind::SampledImage, Limit::PerStageSampledImages),
-            (BindingKind::StorageImage, Limit::PerStageStorageImages),
-            (BindingKind::Sampler, Limit::PerStageSamplers),
-        ];
-        let limits = kinds.into_iter().filter_map(floor).collect();
-        let descriptors = Self { limits, ..Self::none() };
-        self.and(&descriptors)
-    }
-
     /// Nothing at all, to build upon.
-    fn none() -> Self {
+    pub(crate) fn none() -> Self {
         Self {
             api_version: 0,
             instance_extensions: Vec::new(),
@@ -245,40 +226,5 @@ impl Requirements {
     pub fn features_to_enable(&self, supported: FeatureSet) -> FeatureSet {
         let wanted = self.features.iter().filter(|need| need.required || supported.contains(need.feature));
         wanted.map(|need| need.feature).collect()
-    }
-
-    /// Everything `offer` lacks; empty when it suffices. Optional features are never listed.
-    pub fn check(&self, offer: &Offer) -> Vec<Missing> {
-        let mut missing = Vec::new();
-        if offer.api_version < self.api_version {
-            missing.push(Missing::ApiVersion { needed: self.api_version, offered: offer.api_version });
-        }
-        if !offer.queue.contains(self.queue) {
-            missing.push(Missing::Queue { needed: self.queue, offered: offer.queue });
-        }
-        let features_below_1_3 = self.features.iter().filter(|need| need.required).filter_map(|need| {
-            let core = offer.api_version >= vk::API_VERSION_1_3;
-            need.feature.extension_before_1_3().filter(|_| !core)
-        });
-        let instance = self.instance_extensions.iter().filter(|need| need.required).map(|need| need.name);
-        let extensions = instance.chain(self.extensions.iter().copied()).chain(features_below_1_3);
-        let lacking = extensions.filter(|&name| !offer.extensions.iter().any(|have| have == name));
-        missing.extend(lacking.map(|name| Missing::Extension { name }));
-        let features =
-            self.features.iter().filter(|need| need.required && !offer.features.contains(need.feature));
-        missing.extend(features.map(|need| Missing::Feature { feature: need.feature, buys: need.buys }));
-        for need in &self.limits {
-            let offered = offer.limits.get(&need.limit).copied().unwrap_or(0);
-            if offered < need.at_least {
-                missing.push(Missing::Limit { need: need.clone(), offered });
-            }
-        }
-        for need in &self.formats {
-            let lacking = need.usage & !offer.formats.get(&need.format).copied().unwrap_or_default();
-            if !lacking.is_empty() {
-                missing.push(Missing::Format { format: need.format, lacking, why: need.why });
-            }
-        }
-        missing
     }
 }

@@ -2,11 +2,14 @@
 
 use crate::context::Context;
 use crate::error::GpuError;
-use crate::execute::Record;
 use crate::memory::{Buffer, Image, ImageView, ViewDesc};
+use crate::recorder::Recorder;
 use airglow_graph as graph;
 use airglow_graph::{Handle, Kind, Origin, Plan, ResourceDesc};
 use ash::vk;
+
+/// What a pass carries through the graph: the closure that records it.
+pub type Record = Box<dyn Fn(&mut Recorder<'_>, &Resources<'_>) -> Result<(), GpuError> + Send>;
 
 /// A resource of a plan made concrete.
 #[derive(Clone)]

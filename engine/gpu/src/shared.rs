@@ -4,7 +4,7 @@ use crate::allocator::{Allocation, Allocator, Location, Request};
 use crate::error::GpuError;
 use crate::feature::FeatureSet;
 use crate::functions::{Functions, with_c_string};
-use crate::memory::ledger::Ledger;
+use crate::ledger::Ledger;
 use crate::retire::Retired;
 use ash::vk;
 use ash::vk::Handle;

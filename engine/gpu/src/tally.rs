@@ -2,13 +2,12 @@
 
 use crate::context::Context;
 use crate::error::GpuError;
-use crate::execute::Record;
 use crate::health::Health;
 use crate::memory::{Buffer, BufferSlice};
 use crate::pipeline::{BindingDesc, BindingKind, ComputePipeline, ComputePipelineDesc, words};
 use crate::recorder::{Binding, Recorder};
 use crate::requirements::Requirements;
-use crate::resources::Imports;
+use crate::resources::{Imports, Record};
 use airglow_graph::{Access, Buffer as GraphBuffer, Graph, Handle, PassKind};
 use bytemuck::{Pod, Zeroable};
 

@@ -228,7 +228,7 @@ impl Timing {
             mask: mask(self.shared.facts.timestamp_valid_bits),
             period: f64::from(self.shared.facts.limits.timestamp_period) * 1e-9,
         };
-        clock.fill(&self.results[..2 * passes], &mut times);
+        times.fill(&clock, &self.results[..2 * passes]);
         times.recorded.clear();
         times.recorded.extend_from_slice(&self.slots[slot].recorded);
         times.statistics.clear();

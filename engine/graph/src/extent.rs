@@ -1,6 +1,5 @@
 //! Extents that follow the frame's or another image's, resolved when the graph is compiled.
 
-use crate::graph::Graph;
 use crate::handle::{Handle, Image, ResourceId};
 
 /// What a relative extent is measured in.
@@ -41,24 +40,6 @@ impl RelativeExtent {
         }
         let scaled = u64::from(side) * u64::from(self.numerator);
         u32::try_from(scaled.div_ceil(u64::from(self.denominator)).max(1)).ok()
-    }
-}
-
-impl<R> Graph<R> {
-    /// Makes width and height of a transient image or of a half of a history follow `extent`; what its
-    /// description says of them is replaced, its depth stays. Both halves of a history follow.
-    pub fn size_relative(&mut self, image: &Handle<Image>, extent: RelativeExtent) {
-        // A handle of another graph may name no resource here; validation reports its uses.
-        let index = image.resource().index();
-        let resources = &mut self.declaration.resources;
-        let halves = match resources.get(index).and_then(|resource| resource.half) {
-            Some(crate::history::Half::Previous) => index..index + 2,
-            Some(crate::history::Half::Current) => index - 1..index + 1,
-            None => index..index + 1,
-        };
-        for resource in resources.get_mut(halves).into_iter().flatten() {
-            resource.relative = Some(extent);
-        }
     }
 }
 

@@ -1,87 +1,19 @@
-//! The declaration: resources, passes, exports, and what was left out.
+//! The graph: what a frame is declared to.
 
 use crate::access::State;
 use crate::compile;
+use crate::declaration::{Declaration, Export, Half, LeftOut, Resource, RoomPipelines};
 use crate::error::GraphError;
 use crate::extent::RelativeExtent;
 use crate::handle::{Buffer, Handle, Image, ImageRange, Kind, ResourceId};
-use crate::history::Half;
 use crate::options::{Limits, Options};
-use crate::pass::{Pass, PassBuilder, PassKind};
 use crate::plan::Plan;
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
 use ash::vk;
 
-/// Something a frame does without, for `plan` to print.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct LeftOut {
-    /// What was left out: a pass, a table, an input.
-    pub what: String,
-    /// Why.
-    pub why: String,
-    /// Device memory this saved, in bytes.
-    pub bytes: u64,
-    /// Time this saved per frame, in seconds, where it has been measured.
-    pub time: Option<f64>,
-    /// What would bring it back.
-    pub would_return: String,
-}
-
-/// The pipelines that a room holds ready, for `plan` to print.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, serde::Serialize)]
-pub struct RoomPipelines {
-    /// The room.
-    pub room: String,
-    /// Permutations prepared for it, used in this frame or not.
-    pub prepared: usize,
-}
-
-/// A resource as declared.
-#[derive(Clone, Debug, Hash)]
-pub(crate) struct Resource {
-    pub name: String,
-    pub desc: ResourceDesc,
-    pub origin: Origin,
-    /// Which half of a history it is, if one.
-    pub half: Option<Half>,
-    /// What width and height follow, if anything.
-    pub relative: Option<RelativeExtent>,
-    /// Version `i + 1` at index `i`; version 0 is what the resource held before.
-    pub versions: Vec<Version>,
-}
-
-/// One write in the life of a resource.
-#[derive(Clone, Copy, Debug, Hash)]
-pub(crate) struct Version {
-    /// The version it was written over.
-    pub parent: u32,
-    /// The pass that wrote it, by index of declaration.
-    pub writer: usize,
-}
-
-/// A version that outlives the plan.
-#[derive(Clone, Copy, Debug, Hash)]
-pub(crate) struct Export {
-    pub resource: ResourceId,
-    pub version: u32,
-    pub range: ImageRange,
-    pub state: State,
-    pub is_image: bool,
-}
-
-/// Everything declared, without the payloads: what the compile phases work on.
-#[derive(Clone, Debug, Default, Hash)]
-pub(crate) struct Declaration {
-    pub resources: Vec<Resource>,
-    pub passes: Vec<Pass>,
-    pub exports: Vec<Export>,
-    pub left_out: Vec<LeftOut>,
-    pub pipelines: Vec<RoomPipelines>,
-}
-
 /// `name`, or `name#2`, `name#3` … where it is taken: messages and printed plans stay unambiguous when one pass
 /// is added for several meshes.
-fn unique<'a>(name: &str, taken: impl Iterator<Item = &'a String> + Clone) -> String {
+pub(crate) fn unique<'a>(name: &str, taken: impl Iterator<Item = &'a String> + Clone) -> String {
     let free = |candidate: &str| taken.clone().all(|other| other != candidate);
     let numbered = (2..).map(|n: u64| format!("{name}#{n}"));
     std::iter::once(name.to_owned()).chain(numbered).find(|name| free(name)).unwrap_or_default()
@@ -158,12 +90,20 @@ impl<R> Graph<R> {
         Handle::new(resource, 0, ImageRange::WHOLE)
     }
 
-    /// Declares a pass; say what it uses on the builder this returns, and give it its payload there.
-    pub fn pass(&mut self, name: &str, kind: PassKind) -> PassBuilder<'_, R> {
-        let name = unique(name, self.declaration.passes.iter().map(|pass| &pass.name));
-        self.declaration.passes.push(Pass::new(name, kind));
-        self.payloads.push(None);
-        PassBuilder::new(self)
+    /// Makes width and height of a transient image or of a half of a history follow `extent`; what its
+    /// description says of them is replaced, its depth stays. Both halves of a history follow.
+    pub fn size_relative(&mut self, image: &Handle<Image>, extent: RelativeExtent) {
+        // A handle of another graph may name no resource here; validation reports its uses.
+        let index = image.resource().index();
+        let resources = &mut self.declaration.resources;
+        let halves = match resources.get(index).and_then(|resource| resource.half) {
+            Some(Half::Previous) => index..index + 2,
+            Some(Half::Current) => index - 1..index + 1,
+            None => index..index + 1,
+        };
+        for resource in resources.get_mut(halves).into_iter().flatten() {
+            resource.relative = Some(extent);
+        }
     }
 
     /// Keeps a version alive past the plan and leaves it in `state`. For an import this replaces the exit
@@ -205,6 +145,6 @@ impl<R> Graph<R> {
 
     /// [`compile`](Self::compile) with choices.
     pub fn compile_with(self, limits: &Limits, options: &Options) -> Result<Plan<R>, GraphError> {
-        compile::compile(self, limits, options)
+        compile::compile(self.declaration, self.payloads, limits, options)
     }
 }

@@ -1,7 +1,8 @@
 //! Resources that remember one frame: two of each, which the host swaps from frame to frame.
 
 use crate::access::State;
-use crate::graph::{Graph, Resource};
+use crate::declaration::{Half, Resource};
+use crate::graph::Graph;
 use crate::handle::{Buffer, Handle, Image, Kind};
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
 use ash::vk::ImageLayout;
@@ -16,13 +17,6 @@ pub struct History<T: Kind> {
     pub previous: Handle<T>,
     /// What this frame writes, all of it; it starts without contents.
     pub current: Handle<T>,
-}
-
-/// Which half of a history a resource is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Half {
-    Previous,
-    Current,
 }
 
 impl<R> Graph<R> {
@@ -61,49 +55,5 @@ impl<R> Graph<R> {
         // The contents are two frames old: nobody may read them, but their last readers may still run.
         let emptied = State { layout: ImageLayout::UNDEFINED, ..resting };
         History { previous, current: half(Half::Current, "current", emptied) }
-    }
-}
-
-/// The halves change places from frame to frame: each needs the usage of both.
-pub(crate) fn share_usage(resources: &mut [Resource]) {
-    for i in 1..resources.len() {
-        let (before, rest) = resources.split_at_mut(i);
-        let (Some(previous), Some(current)) = (before.last_mut(), rest.first_mut()) else { continue };
-        if current.half != Some(Half::Current) {
-            continue;
-        }
-        match (&mut previous.desc, &mut current.desc) {
-            (ResourceDesc::Buffer(previous), ResourceDesc::Buffer(current)) => {
-                previous.usage |= current.usage;
-                current.usage = previous.usage;
-            }
-            (ResourceDesc::Image(previous), ResourceDesc::Image(current)) => {
-                previous.usage |= current.usage;
-                current.usage = previous.usage;
-            }
-            _ => {}
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Access, Limits, PassKind};
-    use ash::vk::BufferUsageFlags;
-
-    #[test]
-    fn halves_that_change_places_have_one_usage() {
-        let mut graph = Graph::<()>::new();
-        let history = graph.history_buffer("history", BufferDesc::new(16), Access::ComputeStorageRead);
-        let mut pass = graph.pass("pass", PassKind::Transfer);
-        pass.read(&history.previous, Access::TransferSource);
-        pass.write(history.current, Access::TransferDestination);
-        pass.record(());
-        let plan = graph.compile(&Limits::default()).unwrap();
-        for resource in plan.resources() {
-            let ResourceDesc::Buffer(desc) = resource.desc else { panic!("a buffer") };
-            assert_eq!(desc.usage, BufferUsageFlags::TRANSFER_SRC | BufferUsageFlags::TRANSFER_DST);
-        }
     }
 }

@@ -34,7 +34,9 @@
 #![forbid(unsafe_code)]
 
 mod access;
+mod builder;
 mod compile;
+mod declaration;
 mod error;
 mod extent;
 mod graph;
@@ -47,13 +49,15 @@ mod resource;
 mod topology;
 
 pub use access::{Access, State};
+pub use builder::PassBuilder;
+pub use declaration::{LeftOut, RoomPipelines};
 pub use error::GraphError;
 pub use extent::{ExtentBase, RelativeExtent};
-pub use graph::{Graph, LeftOut, RoomPipelines};
+pub use graph::Graph;
 pub use handle::{Buffer, Handle, Image, ImageRange, Kind, ResourceId};
 pub use history::History;
 pub use options::{Limits, Options};
-pub use pass::{PassBuilder, PassKind};
+pub use pass::PassKind;
 pub use plan::{
     Barriers, BufferBarrier, Cause, CullReason, Culled, Handover, ImageBarrier, Lifetime, Placement, Plan,
     PlanAccess, PlanBytes, PlanDifference, PlanExport, PlanHistory, PlanResource, Resized, Sharing, Step,

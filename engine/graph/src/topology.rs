@@ -1,6 +1,7 @@
 //! A key of what was declared, so that a host that declares the same frame again can keep its plan.
 
-use crate::graph::{Graph, LeftOut};
+use crate::declaration::LeftOut;
+use crate::graph::Graph;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// A 128-bit hash of everything declared but the payloads: resources, uses, exports, what was left out.

@@ -1,7 +1,7 @@
 //! The one error type of the room: what was wrong with an argument, and how to mend it.
 
-use crate::sh::MAX_ORDER;
-use crate::world::Axis;
+use crate::axis::Axis;
+use crate::order::MAX_ORDER;
 
 /// Why a function of this crate refused its input.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

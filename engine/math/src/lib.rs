@@ -21,7 +21,9 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod axis;
 mod error;
+mod order;
 mod preset;
 pub mod quadrature;
 pub mod sequence;

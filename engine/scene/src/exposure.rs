@@ -2,10 +2,30 @@
 //! Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 1 and 2.
 
 use crate::image::luminance;
-use crate::settings::Exposure;
 
 /// The key of an average scene.
 pub const MIDDLE_GREY: f32 = 0.18;
+
+/// How scene-linear values are scaled before the tone map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// The log-average luminance is brought to `key`; see [`automatic`].
+    Automatic {
+        /// Positive; 0.18 is a middle grey.
+        key: f32,
+    },
+    /// Multiplied by a fixed scale.
+    Fixed {
+        /// Positive; 2^EV.
+        scale: f32,
+    },
+}
+
+impl Default for Exposure {
+    fn default() -> Self {
+        Self::Automatic { key: MIDDLE_GREY }
+    }
+}
 
 /// The scale that brings the log-average luminance of `pixels` (linear RGB) to `key`.
 ///

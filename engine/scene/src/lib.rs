@@ -38,6 +38,7 @@ mod light;
 pub mod limits;
 mod material;
 mod mesh;
+mod motion;
 mod pose;
 mod presets;
 mod scene;
@@ -52,6 +53,7 @@ pub use animation::{Animation, Channel, ChannelValues, Interpolation, LocalTrans
 pub use camera::{Camera, Projection, Sphere};
 pub use environment::Environment;
 pub use error::SceneError;
+pub use exposure::Exposure;
 pub use false_colour::false_colour;
 pub use figure::Figure;
 pub use files::write_atomically;
@@ -61,7 +63,7 @@ pub use material::{AlphaMode, IDENTITY_UV, LAMBERT_ROUGHNESS, Material, Material
 pub use mesh::{ContentHash, Mesh};
 pub use presets::{LIGHT_TRANSPORT, Presets};
 pub use scene::{Instance, Scene};
-pub use settings::{Exposure, Quality, Shadow, Storage};
+pub use settings::{Quality, Shadow, Storage};
 pub use warning::Warning;
 
 /// Loads a scene: a `.toml` scene file, or a `.glb` or `.gltf` file by itself.

@@ -5,6 +5,7 @@ use glam::{Mat4, Vec3};
 use crate::animation::{Animation, Node, Skin};
 use crate::camera::{Camera, Sphere};
 use crate::environment::Environment;
+use crate::exposure::Exposure;
 use crate::figure::Figure;
 use crate::image::Image;
 use crate::light::{Blocker, Emitter, Light, Medium};
@@ -12,7 +13,7 @@ use crate::limits::MAX_COORDINATE;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::presets::Presets;
-use crate::settings::{Exposure, Quality};
+use crate::settings::Quality;
 use crate::warning::Warning;
 
 /// Everything that a scene file or a glTF file holds. World space: metres, right-handed, +Y up.

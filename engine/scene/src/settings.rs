@@ -1,27 +1,6 @@
-//! What a scene file says about exposure and quality, with the defaults.
+//! What a scene file says about quality, with the defaults.
 
 use serde::Deserialize;
-
-/// How scene-linear values are scaled before the tone map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Exposure {
-    /// The log-average luminance is brought to `key`; see [`crate::exposure::automatic`].
-    Automatic {
-        /// Positive; 0.18 is a middle grey.
-        key: f32,
-    },
-    /// Multiplied by a fixed scale.
-    Fixed {
-        /// Positive; 2^EV.
-        scale: f32,
-    },
-}
-
-impl Default for Exposure {
-    fn default() -> Self {
-        Self::Automatic { key: crate::exposure::MIDDLE_GREY }
-    }
-}
 
 /// What the light transport is computed with.
 #[derive(Clone, Copy, Debug, PartialEq)]

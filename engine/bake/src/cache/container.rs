@@ -8,7 +8,7 @@ use std::path::Path;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde_json::{Map, Value};
 
-use super::{CacheError, Miss};
+use super::error::{CacheError, Miss};
 
 /// A kind of cache file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

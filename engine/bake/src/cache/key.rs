@@ -2,8 +2,11 @@
 
 use glam::{Mat4, Vec3};
 
-use super::SCHEMA;
 use crate::{BelowHorizon, Mesh, Occluder, Settings};
+
+/// Version of the layout and of the meaning of the numbers in it. It rises whenever a bake of the same input
+/// would come out differently.
+pub const SCHEMA: u32 = 1;
 
 /// BLAKE3 of the schema, the settings, the mesh and the occluders in reach. Equal keys mean equal bakes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

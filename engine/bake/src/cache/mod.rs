@@ -4,6 +4,7 @@
 //! absent; whatever cannot be used, for a reason that is told, is baked again.
 
 pub mod container;
+mod error;
 mod file;
 mod key;
 
@@ -11,8 +12,9 @@ use std::path::Path;
 
 use glam::Mat4;
 
-pub use file::{CacheError, Miss, Precision, SCHEMA, load, store};
-pub use key::CacheKey;
+pub use error::{CacheError, Miss};
+pub use file::{Precision, load, store};
+pub use key::{CacheKey, SCHEMA};
 
 use crate::{BakeError, Baked, Executor, Mesh, Occluder, Occluders, Progress, Settings, Stats, Transfer};
 

@@ -3,7 +3,6 @@
 use super::Label;
 use super::heap::Heap;
 use crate::allocator::{Allocation, Location};
-use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
 use crate::shared::{Shared, lock};
@@ -90,6 +89,16 @@ impl Buffer {
         let mut inner = Inner::new(shared, raw, label, desc, shared.ledger().add(label.owner, 0));
         inner.heap = Some(heap.clone());
         Self(Arc::new(inner))
+    }
+
+    /// A buffer whose memory is the host's.
+    pub(crate) fn imported(
+        shared: &Arc<Shared>,
+        raw: vk::Buffer,
+        label: Label<'_>,
+        desc: &BufferDesc,
+    ) -> Self {
+        Self(Arc::new(Inner::new(shared, raw, label, desc, shared.ledger().add(label.owner, 0))))
     }
 
     /// The Vulkan handle, for the host's own commands. It dies with the last clone, frames later.
@@ -254,31 +263,5 @@ impl From<&Buffer> for BufferSlice {
 impl From<&BufferSlice> for BufferSlice {
     fn from(slice: &BufferSlice) -> Self {
         slice.clone()
-    }
-}
-
-impl Context {
-    /// Makes a buffer of at least one byte.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`] over `maxMemoryAllocationSize` or `maxBufferSize`, [`GpuError::Memory`] when there is
-    /// no memory left, [`GpuError::Misuse`] for an empty buffer.
-    pub fn create_buffer(
-        &self,
-        label: Label<'_>,
-        desc: &BufferDesc,
-        location: Location,
-    ) -> Result<Buffer, GpuError> {
-        Buffer::new(&self.shared, label, desc, location)
-    }
-
-    /// Wraps a buffer of the host's. `desc` must describe it truly.
-    ///
-    /// # Safety
-    /// `raw` is a live buffer of this device with at least the stated size and usage, bound to memory, and stays
-    /// so until every clone is dropped and the frames that used it are done. Dropping the clones does not destroy it.
-    pub unsafe fn import_buffer(&self, raw: vk::Buffer, label: Label<'_>, desc: &BufferDesc) -> Buffer {
-        let ledger = self.shared.ledger().add(label.owner, 0);
-        Buffer(Arc::new(Inner::new(&self.shared, raw, label, desc, ledger)))
     }
 }

@@ -1,15 +1,36 @@
 //! Images.
 
+use super::Label;
 use super::heap::Heap;
-use super::{Label, ViewDesc};
 use crate::allocator::{Allocation, Location};
-use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
 use crate::shared::{Shared, lock};
 use airglow_graph::ImageDesc;
 use ash::vk;
 use std::sync::{Arc, Mutex};
+
+/// Which part of an image is seen, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewDesc {
+    /// Shape of the view.
+    pub dimension: vk::ImageViewType,
+    /// First mip level.
+    pub base_mip: u32,
+    /// Number of mip levels.
+    pub mips: u32,
+    /// First array layer.
+    pub base_layer: u32,
+    /// Number of array layers.
+    pub layers: u32,
+}
+
+impl ViewDesc {
+    /// One mip of one layer, as rendering and storage writes want it.
+    pub fn single(mip: u32, layer: u32) -> Self {
+        Self { dimension: vk::ImageViewType::TYPE_2D, base_mip: mip, mips: 1, base_layer: layer, layers: 1 }
+    }
+}
 
 /// An image. Clones refer to the same image; the last one dropped retires it and its views.
 #[derive(Clone)]
@@ -62,6 +83,12 @@ impl Image {
         shared.name(raw, vk::ObjectType::IMAGE, label.name);
         let ledger = shared.ledger().add(label.owner, 0);
         Self::from_parts(shared, raw, label, desc, (None, Some(heap.clone())), ledger)
+    }
+
+    /// An image whose memory is the host's.
+    pub(crate) fn imported(shared: &Arc<Shared>, raw: vk::Image, label: Label<'_>, desc: &ImageDesc) -> Self {
+        let ledger = shared.ledger().add(label.owner, 0);
+        Self::from_parts(shared, raw, label, desc, (None, None), ledger)
     }
 
     fn from_parts(
@@ -176,26 +203,4 @@ pub(crate) fn check(
         return Ok(());
     };
     Err(GpuError::misuse(label.name, problem))
-}
-
-impl Context {
-    /// Makes an image with optimal tiling, in layout `UNDEFINED`.
-    ///
-    /// # Errors
-    /// [`GpuError::Misuse`] for what the device cannot make (format with usage, size, layers), [`GpuError::Memory`]
-    /// when there is no memory left.
-    pub fn create_image(&self, label: Label<'_>, desc: &ImageDesc) -> Result<Image, GpuError> {
-        Image::new(&self.shared, label, desc)
-    }
-
-    /// Wraps an image of the host's. `desc` must describe it truly.
-    ///
-    /// # Safety
-    /// `raw` is a live image of this device with that format, extent, mips, layers and usage, bound to memory, and
-    /// stays so until every clone is dropped and the frames that used it are done. Dropping the clones destroys only
-    /// the views made here.
-    pub unsafe fn import_image(&self, raw: vk::Image, label: Label<'_>, desc: &ImageDesc) -> Image {
-        let ledger = self.shared.ledger().add(label.owner, 0);
-        Image::from_parts(&self.shared, raw, label, desc, (None, None), ledger)
-    }
 }

@@ -3,15 +3,13 @@
 pub(crate) mod buffer;
 pub(crate) mod heap;
 pub(crate) mod image;
-pub(crate) mod ledger;
 pub(crate) mod sampler;
 pub(crate) mod view;
 
 pub use buffer::{Buffer, BufferSlice};
-pub use image::Image;
-pub use ledger::OwnerBytes;
+pub use image::{Image, ViewDesc};
 pub use sampler::{Sampler, SamplerDesc};
-pub use view::{ImageView, ViewDesc};
+pub use view::ImageView;
 
 /// Whose a resource is and what it is called.
 #[derive(Clone, Copy, Debug)]

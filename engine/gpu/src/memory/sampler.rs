@@ -1,6 +1,5 @@
 //! Samplers.
 
-use crate::context::Context;
 use crate::error::GpuError;
 use crate::retire::Retired;
 use crate::shared::Shared;
@@ -45,6 +44,24 @@ struct Inner {
 }
 
 impl Sampler {
+    pub(crate) fn new(shared: &Arc<Shared>, desc: &SamplerDesc<'_>) -> Result<Self, GpuError> {
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(desc.filter)
+            .min_filter(desc.filter)
+            .mipmap_mode(desc.mipmap_mode)
+            .address_mode_u(desc.address[0])
+            .address_mode_v(desc.address[1])
+            .address_mode_w(desc.address[2])
+            .compare_enable(desc.compare.is_some())
+            .compare_op(desc.compare.unwrap_or_default())
+            .max_lod(vk::LOD_CLAMP_NONE);
+        // SAFETY: a live device and a complete description without extensions.
+        let raw = unsafe { shared.device().create_sampler(&info, None) }
+            .map_err(GpuError::vulkan("vkCreateSampler"))?;
+        shared.name(raw, vk::ObjectType::SAMPLER, desc.name);
+        Ok(Self(Arc::new(Inner { shared: Arc::clone(shared), raw })))
+    }
+
     /// The Vulkan handle.
     pub fn raw(&self) -> vk::Sampler {
         self.0.raw
@@ -58,29 +75,5 @@ impl Sampler {
 impl Drop for Inner {
     fn drop(&mut self) {
         self.shared.retire(Retired::Sampler(self.raw));
-    }
-}
-
-impl Context {
-    /// Makes a sampler.
-    ///
-    /// # Errors
-    /// [`GpuError::Vulkan`] if the device refuses.
-    pub fn create_sampler(&self, desc: &SamplerDesc<'_>) -> Result<Sampler, GpuError> {
-        let info = vk::SamplerCreateInfo::default()
-            .mag_filter(desc.filter)
-            .min_filter(desc.filter)
-            .mipmap_mode(desc.mipmap_mode)
-            .address_mode_u(desc.address[0])
-            .address_mode_v(desc.address[1])
-            .address_mode_w(desc.address[2])
-            .compare_enable(desc.compare.is_some())
-            .compare_op(desc.compare.unwrap_or_default())
-            .max_lod(vk::LOD_CLAMP_NONE);
-        // SAFETY: a live device and a complete description without extensions.
-        let raw = unsafe { self.shared.device().create_sampler(&info, None) }
-            .map_err(GpuError::vulkan("vkCreateSampler"))?;
-        self.shared.name(raw, vk::ObjectType::SAMPLER, desc.name);
-        Ok(Sampler(Arc::new(Inner { shared: Arc::clone(&self.shared), raw })))
     }
 }

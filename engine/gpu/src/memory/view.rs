@@ -1,32 +1,10 @@
 //! Views of an image's mips and layers.
 
-use super::Image;
+use super::image::{Image, ViewDesc};
 use crate::error::GpuError;
 use crate::shared::lock;
 use airglow_graph::ImageDesc;
 use ash::vk;
-
-/// Which part of an image is seen, and as what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ViewDesc {
-    /// Shape of the view.
-    pub dimension: vk::ImageViewType,
-    /// First mip level.
-    pub base_mip: u32,
-    /// Number of mip levels.
-    pub mips: u32,
-    /// First array layer.
-    pub base_layer: u32,
-    /// Number of array layers.
-    pub layers: u32,
-}
-
-impl ViewDesc {
-    /// One mip of one layer, as rendering and storage writes want it.
-    pub fn single(mip: u32, layer: u32) -> Self {
-        Self { dimension: vk::ImageViewType::TYPE_2D, base_mip: mip, mips: 1, base_layer: layer, layers: 1 }
-    }
-}
 
 /// Usages that need a Vulkan view; an image that is only copied has none.
 const VIEWED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(

@@ -12,7 +12,8 @@ pub use messages::{Message, MessageLog};
 pub use select::{DeviceKind, DeviceLine, Selector};
 pub use submit::{FrameLoop, FrameSemaphores};
 
-use crate::context::{AdoptInfo, Context};
+use crate::adopt::AdoptInfo;
+use crate::context::Context;
 use crate::error::GpuError;
 use crate::feature::{FeatureSet, FeatureStructs};
 use crate::options::Options;

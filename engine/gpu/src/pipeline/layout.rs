@@ -1,6 +1,7 @@
 //! What a pipeline takes: bindings of descriptor set 0 and push constants.
 
 use crate::error::GpuError;
+use crate::requirements::{Limit, LimitNeed, Requirements};
 use crate::retire::Retired;
 use crate::shared::Shared;
 use ash::vk;
@@ -50,6 +51,28 @@ impl BindingDesc {
     /// Binding `binding` holding a `kind`.
     pub const fn new(binding: u32, kind: BindingKind) -> Self {
         Self { binding, kind }
+    }
+}
+
+impl Requirements {
+    /// Asks for room for the descriptors of a pipeline with `bindings`, all of them seen by one stage.
+    #[must_use]
+    pub fn with_descriptors(self, bindings: &[BindingDesc]) -> Self {
+        let count = |kind| bindings.iter().filter(|binding| binding.kind == kind).count() as u64;
+        let floor = |(kind, limit)| match count(kind) {
+            0 => None,
+            at_least => Some(LimitNeed { limit, at_least, why: "descriptors of one pipeline" }),
+        };
+        let kinds = [
+            (BindingKind::StorageBuffer, Limit::PerStageStorageBuffers),
+            (BindingKind::UniformBuffer, Limit::PerStageUniformBuffers),
+            (BindingKind::SampledImage, Limit::PerStageSampledImages),
+            (BindingKind::StorageImage, Limit::PerStageStorageImages),
+            (BindingKind::Sampler, Limit::PerStageSamplers),
+        ];
+        let limits = kinds.into_iter().filter_map(floor).collect();
+        let descriptors = Self { limits, ..Self::none() };
+        self.and(&descriptors)
     }
 }
 

@@ -14,6 +14,7 @@
 mod binding;
 mod commands;
 mod copy;
+mod crumbs;
 mod draw;
 mod rendering;
 

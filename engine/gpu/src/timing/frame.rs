@@ -1,7 +1,7 @@
 //! What a ring of queries found: times of one frame, and medians over many.
 
 use super::statistics::PassStatistics;
-use crate::clock::{median, quantile};
+use crate::clock::{Clock, median, quantile};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -24,6 +24,21 @@ pub struct FrameTimes {
     pub recorded: Vec<[Instant; 2]>,
     /// Statistics of each pass; empty unless asked for ([`Timing::with_pipeline_statistics`](super::Timing)).
     pub statistics: Vec<PassStatistics>,
+}
+
+impl FrameTimes {
+    /// Turns begin and end of each pass, as `clock` counts, into times.
+    pub(super) fn fill(&mut self, clock: &Clock, results: &[[u64; 2]]) {
+        let pairs = || results.chunks_exact(2).map(|pair| (pair[0][0], pair[1][0]));
+        let start = results.first().map_or(0, |first| first[0] & clock.mask);
+        self.start = start;
+        self.passes.clear();
+        self.passes.extend(pairs().map(|(begin, end)| clock.seconds(begin, end)));
+        self.begins.clear();
+        self.begins.extend(pairs().map(|(begin, _)| clock.seconds(start, begin)));
+        self.sum = self.passes.iter().sum();
+        self.span = pairs().map(|(_, end)| clock.seconds(start, end)).fold(0.0, f64::max);
+    }
 }
 
 /// Median device time of a pass.
@@ -72,5 +87,29 @@ impl TimingSummary {
             coverage: median(covered).unwrap_or(0.0),
             passes: names.iter().enumerate().map(pass).collect::<Option<_>>()?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::mask;
+
+    #[test]
+    fn wrapped_counters_and_overlap_give_true_times() {
+        let clock = Clock { mask: mask(36), period: 1e-9 };
+        let near_end = (1 << 36) - 100;
+        let results = [[near_end, 1], [900, 1], [400, 1], [1400, 1]];
+        let mut times = FrameTimes::default();
+        times.fill(&clock, &results);
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-15, "{a} against {b}");
+        near(times.passes[0], 1000e-9);
+        near(times.passes[1], 1000e-9);
+        near(times.begins[1], 500e-9);
+        assert_eq!((times.start, times.begins[0]), (near_end, 0.0));
+        near(times.sum, 2000e-9);
+        near(times.span, 1500e-9);
+        near(clock.seconds(500, 499), 0.0);
+        assert_eq!((mask(64), mask(0), mask(1)), (u64::MAX, 0, 1));
     }
 }

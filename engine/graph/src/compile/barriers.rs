@@ -5,7 +5,7 @@ use super::epochs::{Epoch, Slot, push};
 use super::lives::contains;
 use super::scope::{EVERYWHERE, NOWHERE, Scope, one_of};
 use crate::access::{State, writes};
-use crate::graph::Declaration;
+use crate::declaration::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 use crate::options::Limits;
 use crate::plan::{Barriers, BufferBarrier, Cause, ImageBarrier};

@@ -1,7 +1,7 @@
 //! Phase 5: passes that reach no export, no import and no side effect are left out, with the reason.
 
 use super::lives::Lives;
-use crate::graph::Declaration;
+use crate::declaration::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 use crate::plan::{CullReason, Culled};
 use crate::resource::Origin;

@@ -1,8 +1,8 @@
 //! Phase 1: extents relative to the frame or to another image become texels.
 
+use crate::declaration::{Declaration, Resource};
 use crate::error::GraphError;
 use crate::extent::{ExtentBase, RelativeExtent};
-use crate::graph::{Declaration, Resource};
 use crate::options::Options;
 use crate::resource::{Origin, ResourceDesc};
 

@@ -1,10 +1,9 @@
 //! Phase 3: versions form one chain, nothing is read that nobody wrote, nothing exported is overwritten.
 
 use super::lives::Lives;
+use crate::declaration::{Declaration, Half, Resource};
 use crate::error::GraphError;
-use crate::graph::{Declaration, Resource};
 use crate::handle::{ImageRange, ResourceId};
-use crate::history::Half;
 use crate::resource::Origin;
 use ash::vk;
 

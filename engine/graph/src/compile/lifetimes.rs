@@ -1,6 +1,6 @@
 //! Phase 6: from which step to which step each resource is in use.
 
-use crate::graph::Declaration;
+use crate::declaration::Declaration;
 use crate::plan::{Lifetime, PlanExport, PlanResource};
 
 pub(super) fn lifetimes(declaration: &Declaration, order: &[usize]) -> Vec<PlanResource> {

@@ -1,6 +1,6 @@
 //! Who wrote and who read each subresource, version by version: what hazards, order and cull look up.
 
-use crate::graph::Declaration;
+use crate::declaration::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 
 /// A write of one version.

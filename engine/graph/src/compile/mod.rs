@@ -12,25 +12,28 @@ mod cull;
 mod epochs;
 mod extents;
 mod hazards;
+mod histories;
 mod lifetimes;
 mod lives;
 mod order;
 mod scope;
 mod validate;
 
+use crate::declaration::Declaration;
 use crate::error::GraphError;
-use crate::graph::{Declaration, Graph};
-use crate::handle::ResourceId;
-use crate::history::Half;
 use crate::options::{Limits, Options};
 use crate::pass::{Pass, Use};
-use crate::plan::{Plan, PlanAccess, PlanHistory, Step};
-use crate::resource::Origin;
+use crate::plan::{Plan, PlanAccess, Step};
 use ash::vk;
 use lives::Lives;
 
-pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits, options: &Options) -> Result<Plan<R>, GraphError> {
-    let Graph { mut declaration, payloads } = graph;
+/// `payloads` are those of the passes declared, in their order.
+pub(crate) fn compile<R>(
+    mut declaration: Declaration,
+    payloads: Vec<Option<R>>,
+    limits: &Limits,
+    options: &Options,
+) -> Result<Plan<R>, GraphError> {
     extents::extents(&mut declaration, options)?;
     validate::validate(&mut declaration, limits)?;
     let payloads = require_payloads(&declaration, payloads)?;
@@ -41,7 +44,7 @@ pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits, options: &Options) ->
     let order: Vec<usize> = order.into_iter().filter(|pass| cull.alive[*pass]).collect();
     let resources = lifetimes::lifetimes(&declaration, &order);
     let barriers = barriers::barriers(&declaration, &order, limits);
-    let histories = histories(&declaration);
+    let histories = histories::histories(&declaration);
     Ok(Plan {
         steps: steps(declaration.passes, payloads, &order, barriers.steps),
         resources,
@@ -54,21 +57,6 @@ pub(crate) fn compile<R>(graph: Graph<R>, limits: &Limits, options: &Options) ->
         pipelines: declaration.pipelines,
         queue_family: limits.queue_family,
     })
-}
-
-/// Halves are declared in pairs, the previous one first.
-fn histories(declaration: &Declaration) -> Vec<PlanHistory> {
-    let resources = declaration.resources.iter().enumerate();
-    resources
-        .filter_map(|(index, resource)| match (resource.half, resource.origin) {
-            (Some(Half::Previous), Origin::Imported { exit, .. }) => Some(PlanHistory {
-                previous: ResourceId(index as u32),
-                current: ResourceId(index as u32 + 1),
-                resting: exit,
-            }),
-            _ => None,
-        })
-        .collect()
 }
 
 fn require_payloads<R>(declaration: &Declaration, payloads: Vec<Option<R>>) -> Result<Vec<R>, GraphError> {

@@ -2,8 +2,8 @@
 //! ready, or with a seed any of them.
 
 use super::lives::{Life, Lives, contains};
+use crate::declaration::Declaration;
 use crate::error::GraphError;
-use crate::graph::Declaration;
 use crate::handle::{ImageRange, ResourceId};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};

@@ -1,10 +1,10 @@
 //! Phase 2: every use makes sense by itself. Resolves ranges and completes the usage of transients.
 
+use super::histories::share_usage;
 use crate::access::{Access, writes};
+use crate::declaration::{Declaration, Half, Resource};
 use crate::error::GraphError;
-use crate::graph::{Declaration, Resource};
 use crate::handle::ImageRange;
-use crate::history::{Half, share_usage};
 use crate::options::Limits;
 use crate::pass::{Pass, PassKind, Use};
 use crate::resource::{BufferDesc, ImageDesc, Origin, ResourceDesc};
@@ -285,8 +285,8 @@ fn check_pair(first: &Use, second: &Use) -> Checked {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::builder::PassBuilder;
     use crate::graph::Graph;
-    use crate::pass::PassBuilder;
 
     /// The message about a pass of one kind that uses a fresh buffer and a fresh image somehow.
     fn message(kind: PassKind, declare: impl FnOnce(&mut PassBuilder<'_, ()>)) -> String {

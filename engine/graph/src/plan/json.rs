@@ -3,7 +3,7 @@
 use super::text::flags;
 use super::{Barriers, CullReason, Culled, Lifetime, Plan, PlanAccess, PlanBytes, PlanResource, Step};
 use crate::access::State;
-use crate::graph::{LeftOut, RoomPipelines};
+use crate::declaration::{LeftOut, RoomPipelines};
 use crate::handle::{ImageRange, ResourceId};
 use crate::pass::PassKind;
 use crate::resource::{Origin, ResourceDesc};

@@ -14,7 +14,7 @@ pub use difference::{PlanDifference, Resized};
 pub use sharing::{Handover, Placement, Sharing};
 
 use crate::access::{Access, State};
-use crate::graph::{LeftOut, RoomPipelines};
+use crate::declaration::{LeftOut, RoomPipelines};
 use crate::handle::{Handle, ImageRange, Kind, ResourceId};
 use crate::pass::PassKind;
 use crate::resource::{Origin, ResourceDesc};

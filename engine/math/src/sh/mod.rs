@@ -10,16 +10,9 @@ pub mod zonal;
 pub use basis::{evaluate, evaluate_f32};
 pub use projection::{project, project_samples, reconstruct};
 
+pub use crate::order::{MAX_ORDER, coefficient_count};
+
 use crate::MathError;
-
-/// The largest supported order (number of bands): bands 0 to 7, 64 coefficients.
-pub const MAX_ORDER: usize = 8;
-
-/// Number of coefficients of an order: `order²`.
-#[must_use]
-pub const fn coefficient_count(order: usize) -> usize {
-    order * order
-}
 
 /// Position `l(l+1)+m` of band `l`, degree `m` in a coefficient array; meant for `|m| <= l`.
 #[must_use]

@@ -8,8 +8,10 @@ mod depth;
 
 use glam::{DMat3, DVec3};
 
-pub use axes::{Axes, Axis, Handedness};
+pub use axes::{Axes, Handedness};
 pub use depth::Depth;
+
+pub use crate::axis::Axis;
 
 use crate::MathError;
 use crate::sh::rotation::Rotation;

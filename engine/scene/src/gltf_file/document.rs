@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use serde_json::Value;
 
-use super::textures::UvTransform;
+use super::uv_transform::UvTransform;
 use super::{accessor, check, extensions};
 use crate::error::{SceneError, at_most, invalid, unsupported};
 use crate::files;

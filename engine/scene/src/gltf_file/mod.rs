@@ -10,6 +10,7 @@ mod nodes;
 mod primitive;
 mod repair;
 mod textures;
+mod uv_transform;
 
 use std::path::Path;
 

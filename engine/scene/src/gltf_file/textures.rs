@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use gltf::image::Source;
 use gltf::texture::{MagFilter, WrappingMode};
-use serde_json::Value;
 
 use super::document::{Document, fetch};
+use super::uv_transform::UvTransform;
 use super::{label, name_of};
 use crate::error::{SceneError, at_most, invalid};
 use crate::image::{Encoding, Image};
@@ -30,43 +30,10 @@ pub(super) struct Reference<'a> {
     pub(super) transform: Option<UvTransform>,
 }
 
-/// KHR_texture_transform as the file states it.
-#[derive(Clone, Copy)]
-pub(super) struct UvTransform {
-    offset: [f32; 2],
-    rotation: f32,
-    scale: [f32; 2],
-    set: Option<u32>,
-}
-
 impl<'a> From<gltf::texture::Info<'a>> for Reference<'a> {
     fn from(info: gltf::texture::Info<'a>) -> Self {
-        let transform = info.texture_transform().map(|transform| UvTransform {
-            offset: transform.offset(),
-            rotation: transform.rotation(),
-            scale: transform.scale(),
-            set: transform.tex_coord(),
-        });
+        let transform = info.texture_transform().map(UvTransform::from);
         Self { texture: info.texture(), set: info.tex_coord(), transform }
-    }
-}
-
-impl UvTransform {
-    /// The transform of the normal texture of `material`, a material's JSON, which the gltf crate does not read.
-    pub(super) fn of_normal_texture(material: &Value) -> Result<Option<Self>, serde_json::Error> {
-        let Some(found) = material.pointer("/normalTexture/extensions/KHR_texture_transform") else {
-            return Ok(None);
-        };
-        let read: gltf::json::extensions::texture::TextureTransform = serde_json::from_value(found.clone())?;
-        let (offset, rotation, scale) = (read.offset.0, read.rotation.0, read.scale.0);
-        Ok(Some(Self { offset, rotation, scale, set: read.tex_coord }))
-    }
-
-    /// Translation * rotation * scale, as the extension defines them.
-    fn affine(&self) -> [[f32; 3]; 2] {
-        let ([x, y], [u, v]) = (self.offset, self.scale);
-        let (sine, cosine) = self.rotation.sin_cos();
-        [[cosine * u, sine * v, x], [-sine * u, cosine * v, y]]
     }
 }
 

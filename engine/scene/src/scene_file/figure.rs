@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::at;
 use super::place::Builder;
-use super::schema::{MaterialTable, Placed};
+use super::placed::{MaterialTable, Placed};
 use super::values::{Finite, Rotation, Scale, Vector};
 use crate::error::SceneError;
 use crate::figure::Figure;

@@ -3,6 +3,7 @@
 
 mod figure;
 mod place;
+mod placed;
 mod schema;
 mod values;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Mat4, Vec3};
 
-use super::schema::Placed;
+use super::placed::Placed;
 use crate::animation::{LocalTransform, Node};
 use crate::camera::Camera;
 use crate::error::{SceneError, at_most, invalid};

@@ -4,20 +4,17 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use airglow_math::{MathError, Preset};
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::figure::FigureTable;
-use super::values::{
-    Albedo, Finite, Fraction, MeanCosine, NotNegative, Positive, Rgb, Rotation, Scale, Times, Vector,
-    ViewDegrees,
-};
-use crate::exposure::scale_of_ev;
+use super::placed::Placed;
+use super::values::{Albedo, Finite, MeanCosine, NotNegative, Positive, Rgb, Rotation, Vector, ViewDegrees};
+use crate::exposure::{Exposure, scale_of_ev};
 use crate::light::{Blocker, Emitter, EmitterShape, Medium};
-use crate::material::{Material, MaterialClass};
 use crate::presets::{LIGHT_TRANSPORT, Presets};
-use crate::settings::{Exposure, Quality, Shadow, Storage};
+use crate::settings::{Quality, Shadow, Storage};
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -40,62 +37,6 @@ pub(super) struct SceneFile {
     pub(super) exposure: ExposureTable,
     #[serde(default)]
     pub(super) quality: QualityTable,
-}
-
-/// `[[gltf]]` and `[[instance]]`: a file and where it goes.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Placed {
-    pub(super) file: PathBuf,
-    pub(super) mesh: Option<Spanned<String>>,
-    /// How often each triangle is cut into four.
-    #[serde(default)]
-    pub(super) subdivide: Times,
-    pub(super) translation: Option<Vector>,
-    #[serde(default)]
-    pub(super) rotation: Rotation,
-    pub(super) scale: Option<Scale>,
-    pub(super) material: Option<MaterialTable>,
-}
-
-impl Placed {
-    /// Scale, then rotation, then translation.
-    pub(super) fn components(&self) -> (Vec3, glam::Quat, Vec3) {
-        let scale = self.scale.map_or(Vec3::ONE, Vec3::from);
-        (scale, self.rotation.0, self.translation.map_or(Vec3::ZERO, Vec3::from))
-    }
-
-    pub(super) fn transform(&self) -> Mat4 {
-        let (scale, rotation, translation) = self.components();
-        Mat4::from_scale_rotation_translation(scale, rotation, translation)
-    }
-}
-
-/// `material`: one surface for all that is placed.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MaterialTable {
-    base_color: Option<Albedo>,
-    metallic: Option<Fraction>,
-    roughness: Option<Fraction>,
-    emissive: Option<Rgb>,
-}
-
-impl MaterialTable {
-    pub(super) fn material(&self, name: String) -> Material {
-        let [r, g, b] = self.base_color.map_or([1.0; 3], Into::into);
-        let metallic = self.metallic.map_or(0.0, |value| value.0);
-        let roughness = self.roughness.map_or(1.0, |value| value.0);
-        Material {
-            name,
-            class: MaterialClass::of(metallic, roughness),
-            base_color: [r, g, b, 1.0],
-            metallic,
-            roughness,
-            emissive: self.emissive.map_or([0.0; 3], Into::into),
-            ..Material::default()
-        }
-    }
 }
 
 /// `[environment]`.
