@@ -6,22 +6,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use airglow_gpu::ash::vk::{self, BufferUsageFlags, ImageLayout};
 use airglow_gpu::requirements::FormatNeed;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ColorAttachment, ComputePipeline, Context, GpuError,
-    GraphicsPipeline, Image, ImageView, Imports, Label, Load, Location, Record, Recorder, Rendering,
-    Requirements,
+    Binding, Buffer, ColorAttachment, ComputePipeline, Context, GpuError, GraphicsPipeline, Image, ImageView,
+    Imports, Label, Load, Location, Record, Recorder, Rendering, Requirements,
 };
 use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::distant::Distant;
 use crate::envelope::{Envelope, Part, Pipelines};
 use crate::error::check;
+use crate::kernels::{BACKGROUND_BINDINGS, GatherConstants, LevelConstants};
 use crate::{FogError, kernels};
-
-/// Bindings of the kernels of the background: the environment, the pyramid of its parts.
-pub const BACKGROUND_BINDINGS: [BindingDesc; 2] =
-    [BindingDesc::new(0, BindingKind::SampledImage), BindingDesc::new(1, BindingKind::StorageBuffer)];
 
 /// How many of its radii a part of the map must be away to be taken as one: see the room's README for what it errs.
 const AWAY: f32 = 2.0;
@@ -35,29 +30,6 @@ pub struct Background {
     reduce: ComputePipeline,
     gather: GraphicsPipeline,
     made: Arc<Mutex<Option<Asked>>>,
-}
-
-/// Push constants of `background_parts.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct LevelConstants {
-    size: [u32; 2],
-    level: u32,
-    first: u32,
-    below: u32,
-}
-
-/// Push constants of `background.frag`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct GatherConstants {
-    optical: [f32; 4],
-    albedo: [f32; 4],
-    size: [u32; 2],
-    target: [u32; 2],
-    levels: u32,
-    straight: f32,
-    padding: [u32; 2],
 }
 
 /// What of an environment in fog a map holds.

@@ -6,10 +6,10 @@ use airglow_graph::LeftOut;
 
 use crate::FogError;
 use crate::error::check;
-use crate::frame::{Counts, View};
 use crate::pack::{FrameConstants, Packed, pack};
 use crate::settings::Settings;
 use crate::tiles::Tiles;
+use crate::view::View;
 
 /// Pixels along a side of a picture, at most.
 const MAX_SIDE: u32 = 1 << 16;
@@ -20,6 +20,19 @@ pub struct Control {
     settings: Settings,
     size: [u32; 2],
     frame: Arc<Mutex<State>>,
+}
+
+/// Lights of a view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Those whose airlight passes the bound somewhere in the picture.
+    pub evaluated: u32,
+    /// Those left out: dark, too weak, or out of reach of every pixel.
+    pub left_out: u32,
+    /// Pairs of a tile, [`TILE`](crate::TILE) pixels on a side, and a light that is evaluated in it.
+    pub pairs: u32,
+    /// Pairs left out: with those evaluated, as many as there are tiles times lights.
+    pub pairs_left_out: u32,
 }
 
 /// What a recording takes.

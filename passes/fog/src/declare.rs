@@ -6,8 +6,9 @@ use airglow_gpu::Record;
 use airglow_graph::{Graph, Handle, Image, ImageDesc, PassKind};
 
 use crate::FogError;
+use crate::control::Counts;
 use crate::fog::{ACCESSES, Bindings, Fog, Prepared};
-use crate::frame::{Counts, Fogged, Frame};
+use crate::frame::{Fogged, Frame};
 
 impl Fog {
     /// Adds the pass to a graph. The plan may be recorded again in later frames while the size stays and the medium is

@@ -18,7 +18,7 @@ pub enum FogError {
         range: &'static str,
     },
     /// More lights than a frame holds.
-    #[error("fog: {count} lights: give at most {max}, those that matter most", max = crate::MAX_LIGHTS)]
+    #[error("fog: {count} lights: give at most {max}, those that matter most", max = crate::limits::MAX_LIGHTS)]
     TooManyLights {
         /// How many were given.
         count: usize,

@@ -1,21 +1,13 @@
 //! Counts what is wrong with the images that a host gives, frame by frame, without a stall.
 
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, ComputePipeline, Context, GpuError, Health, ImageView, Imports,
-    Record, Recorder, Requirements,
+    Binding, ComputePipeline, Context, GpuError, Health, ImageView, Imports, Record, Recorder, Requirements,
 };
 use airglow_graph::{Access, Graph, Handle, Image, PassKind};
-use bytemuck::{Pod, Zeroable};
 
 use crate::envelope::{Part, Pipelines};
+use crate::kernels::{HEALTH_BINDINGS, SizeConstants};
 use crate::{FogError, kernels};
-
-/// Bindings of `health.comp`: the surfaces' radiance, their depth, the counters.
-pub const HEALTH_BINDINGS: [BindingDesc; 3] = [
-    BindingDesc::new(0, BindingKind::SampledImage),
-    BindingDesc::new(1, BindingKind::SampledImage),
-    BindingDesc::new(2, BindingKind::StorageBuffer),
-];
 
 /// What is counted: pixels whose surface has a component that is not finite; others with a negative one; pixels whose
 /// depth is not between 0 and 1.
@@ -26,13 +18,6 @@ pub const COUNTED: [&str; 3] = ["surface not finite", "surface negative", "depth
 pub struct InputHealth {
     pipeline: ComputePipeline,
     counters: Health,
-}
-
-/// Push constants of `health.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct SizeConstants {
-    size: [u32; 2],
 }
 
 impl InputHealth {

@@ -3,11 +3,9 @@
 use airglow_gpu::ash::vk::{Format, VertexInputRate};
 pub(crate) use airglow_gpu::words;
 use airglow_gpu::{BindingDesc, BindingKind, Kernel, Stages, VertexAttribute, VertexBufferLayout};
+use bytemuck::{Pod, Zeroable};
 
 use crate::FogError;
-use crate::background::{BACKGROUND_BINDINGS, GatherConstants, LevelConstants};
-use crate::health::{HEALTH_BINDINGS, SizeConstants};
-use crate::lobes::LOBE_BINDINGS;
 use crate::medium::PhaseKind;
 use crate::settings::{Preset, Settings};
 use crate::tiles::{Kind, TileConstants};
@@ -94,6 +92,51 @@ pub const BINDINGS: [BindingDesc; 3] = [
     BindingDesc::new(1, BindingKind::SampledImage),
     BindingDesc::new(2, BindingKind::SampledImage),
 ];
+
+/// Bindings of the kernels of the background: the environment, the pyramid of its parts.
+pub const BACKGROUND_BINDINGS: [BindingDesc; 2] =
+    [BindingDesc::new(0, BindingKind::SampledImage), BindingDesc::new(1, BindingKind::StorageBuffer)];
+
+/// Bindings of the kernel that fills tables: exponents, tables.
+pub const LOBE_BINDINGS: [BindingDesc; 2] =
+    [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::StorageBuffer)];
+
+/// Bindings of `health.comp`: the surfaces' radiance, their depth, the counters.
+pub const HEALTH_BINDINGS: [BindingDesc; 3] = [
+    BindingDesc::new(0, BindingKind::SampledImage),
+    BindingDesc::new(1, BindingKind::SampledImage),
+    BindingDesc::new(2, BindingKind::StorageBuffer),
+];
+
+/// Push constants of `background_parts.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LevelConstants {
+    pub(crate) size: [u32; 2],
+    pub(crate) level: u32,
+    pub(crate) first: u32,
+    pub(crate) below: u32,
+}
+
+/// Push constants of `background.frag`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct GatherConstants {
+    pub(crate) optical: [f32; 4],
+    pub(crate) albedo: [f32; 4],
+    pub(crate) size: [u32; 2],
+    pub(crate) target: [u32; 2],
+    pub(crate) levels: u32,
+    pub(crate) straight: f32,
+    pub(crate) padding: [u32; 2],
+}
+
+/// Push constants of `health.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct SizeConstants {
+    pub(crate) size: [u32; 2],
+}
 
 /// Tiles, an instance each.
 static TILE_ROWS: [VertexBufferLayout<'static>; 1] = [VertexBufferLayout {

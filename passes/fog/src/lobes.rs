@@ -8,8 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use airglow_gpu::ash::vk::{AccessFlags2, BufferUsageFlags, PipelineStageFlags2};
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, Context, GpuError, Imports, Label, Location,
-    Record, Recorder,
+    Binding, Buffer, ComputePipeline, Context, GpuError, Imports, Label, Location, Record, Recorder,
 };
 use airglow_graph::{self as graph, Access, BufferDesc, Graph, Handle, LeftOut, PassKind, State};
 
@@ -21,10 +20,6 @@ use crate::{FogError, kernels};
 
 /// The largest exponent of a lobe with a table.
 pub const MAX_EXPONENT: f64 = 1000.0;
-
-/// Bindings of the kernel that fills tables: exponents, tables.
-pub const LOBE_BINDINGS: [BindingDesc; 2] =
-    [BindingDesc::new(0, BindingKind::StorageBuffer), BindingDesc::new(1, BindingKind::StorageBuffer)];
 
 /// How a surface reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,10 +9,11 @@ use crate::beam::{Beam, Region};
 use crate::camera::Rays;
 use crate::environment::ENVIRONMENT_ORDER;
 use crate::error::FogError;
-use crate::frame::View;
+use crate::limits::MAX_LIGHTS;
 use crate::medium::Thinning;
-use crate::settings::{MAX_LIGHTS, Settings};
+use crate::settings::Settings;
 use crate::tiles::{Regions, TILE};
+use crate::view::View;
 
 const COEFFICIENTS: usize = ENVIRONMENT_ORDER * ENVIRONMENT_ORDER;
 

@@ -7,9 +7,6 @@ use crate::FogError;
 use crate::error::check;
 use crate::medium::PhaseKind;
 
-/// Lights of a frame, at most.
-pub const MAX_LIGHTS: usize = 64;
-
 /// How exactly the airlight is computed: relative error against quadrature in f64 over random inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Preset {

@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::beam::{Beam, Region};
 use crate::camera::Rays;
-use crate::settings::MAX_LIGHTS;
+use crate::limits::MAX_LIGHTS;
 
 /// Pixels along a side of a tile: a whole number of waves, and few enough tiles for the host to make lists of each frame.
 pub const TILE: u32 = 64;

@@ -6,7 +6,7 @@ use crate::NormalsError;
 use crate::bench::Bench;
 use crate::brdf::{Brdf, Directions};
 use crate::harmonics::band_factors;
-use crate::kernels::{self, AverageConstants, BINDINGS, RivalConstants};
+use crate::kernels::{self, AverageConstants, BINDINGS, MOST_VECTORS, RivalConstants};
 use crate::map::NormalMap;
 use crate::method::Method;
 use crate::stage::dispatch;
@@ -14,8 +14,6 @@ use airglow_math::sh::zonal::clamped_cosine;
 
 /// Texels of one dispatch.
 const BAND: usize = 1 << 20;
-/// Vectors of the largest row: 25 coefficients.
-pub(crate) const MOST_VECTORS: usize = 7;
 
 /// What a chain keeps of a level: vectors of a texel, row by row.
 #[derive(Clone, Debug, PartialEq)]

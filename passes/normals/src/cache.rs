@@ -6,12 +6,13 @@
 
 use std::collections::HashMap;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 
-use crate::NormalsError;
+pub use crate::error::StoreError;
+
 use crate::chain::{self, Level};
 use crate::map::NormalMap;
 use crate::settings::Settings;
@@ -45,29 +46,6 @@ pub enum Miss {
     /// Of another map, other settings or another version.
     #[error("the file is of another map, other settings or another version")]
     Other,
-}
-
-/// Why a file could not be written; what was at its path is untouched.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StoreError {
-    /// The levels are not those of the map.
-    #[error("the chain has not the levels of its map: build it from this map with these settings")]
-    Shape,
-    /// The container refused.
-    #[error("the chain cannot be encoded: {0}")]
-    Encode(String),
-    /// The file system refused.
-    #[error("{path}: {source}: choose a folder that can be written")]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The settings are out of range or the chain is over its budget.
-    #[error(transparent)]
-    Chain(#[from] NormalsError),
 }
 
 #[derive(Serialize, Deserialize)]

@@ -1,9 +1,9 @@
 //! What this room refuses, and the mend.
 
+use std::path::PathBuf;
+
 use airglow_gpu::{GpuError, Outside};
 use airglow_math::MathError;
-
-use crate::cache::StoreError;
 
 /// Why an input was refused.
 #[derive(Debug, thiserror::Error)]
@@ -85,4 +85,27 @@ impl From<StoreError> for NormalsError {
     fn from(error: StoreError) -> Self {
         Self::Store(Box::new(error))
     }
+}
+
+/// Why a chain could not be kept in a file; what was at its path is untouched.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// The levels are not those of the map.
+    #[error("the chain has not the levels of its map: build it from this map with these settings")]
+    Shape,
+    /// The container refused.
+    #[error("the chain cannot be encoded: {0}")]
+    Encode(String),
+    /// The file system refused.
+    #[error("{path}: {source}: choose a folder that can be written")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The settings are out of range or the chain is over its budget.
+    #[error(transparent)]
+    Chain(#[from] NormalsError),
 }

@@ -5,7 +5,6 @@ use airglow_gpu::{BindingDesc, BindingKind, Kernel};
 use bytemuck::{Pod, Zeroable};
 
 use crate::NormalsError;
-use crate::averages::MOST_VECTORS;
 use crate::brdf::{Brdf, Directions};
 use crate::method::Method;
 use crate::mixture::MAX_LOBES;
@@ -115,6 +114,9 @@ pub struct AverageConstants {
     /// 1 where the level below is the map of normals.
     pub single: u32,
 }
+
+/// Vectors of the largest row that a rival keeps: 25 coefficients.
+pub(crate) const MOST_VECTORS: usize = 7;
 
 /// `Row` of `rivals.comp`.
 #[repr(C)]

@@ -7,11 +7,13 @@ use airglow_gpu::{Imports, Look, Record};
 use airglow_graph::{Buffer, BufferDesc, Graph, Handle};
 
 use crate::RadianceError;
-use crate::control::{Control, Lights};
+use crate::control::Control;
 use crate::health::looks;
+use crate::lights::Lights;
 use crate::radiance::Radiance;
 use crate::receiver::Receiver;
-use crate::stage::{Bindings, Prepared, Resource, Scene, Stage};
+use crate::resource::Resource;
+use crate::stage::{Bindings, Prepared, Scene, Stage};
 
 /// What the pass hands on.
 #[derive(Clone, Debug)]

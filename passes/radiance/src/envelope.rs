@@ -76,7 +76,11 @@ impl Permutations for Envelope {
         let mut all = Vec::new();
         for settings in self.settings() {
             let shape = settings.shape();
-            all.extend([refinement::kernel(), keep::kernel(), kernels::texels(settings.texels())?]);
+            all.extend([
+                refinement::kernel(),
+                keep::kernel(),
+                kernels::texels(settings.shape(), settings.rays)?,
+            ]);
             all.extend(settings.closed_forms.then(|| kernels::analytic(shape)).transpose()?);
             all.extend(vertices::kernels(shape)?);
         }

@@ -4,14 +4,16 @@ use airglow_gpu::{Context, Kernel, Requirements};
 use airglow_graph::{Access, LeftOut, PassKind};
 
 use crate::RadianceError;
-use crate::control::{Control, Lights};
+use crate::control::Control;
 use crate::envelope::Pipelines;
 use crate::gpu::keep::KEEP_BINDINGS;
 use crate::gpu::refinement::REFINE_BINDINGS;
 use crate::gpu::{Keep, Refinement, Texels, VertexKernels, keep, kernels, refinement, vertices};
+use crate::lights::Lights;
 use crate::pass_settings::PassSettings;
 use crate::receiver::Receiver;
-use crate::stage::{Prepared, Resource, Scene, Stage, Work};
+use crate::resource::Resource;
+use crate::stage::{Prepared, Scene, Stage, Work};
 
 /// Incident radiance of near emitters. Made once for a device and [`PassSettings`]; holds no frame.
 #[derive(Clone)]

@@ -15,7 +15,7 @@ use crate::gpu::tree;
 use crate::gpu::vertices::{self, GROUP};
 use crate::gpu::{EmitterTriangle, LightShape, OldSamples, RefineState, SampleBuffers, Surfaces};
 use crate::part::{Chunk, Layout, Part};
-use crate::stage::Resource;
+use crate::resource::Resource;
 use crate::{Hierarchy, PassSettings, RadianceError};
 
 /// Whom this room's memory is charged to.

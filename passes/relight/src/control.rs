@@ -7,8 +7,8 @@ use airglow_math::World;
 use glam::DQuat;
 
 use crate::RelightError;
+use crate::order::MAX_ORDER;
 use crate::rotation::{LightFrame, OPEN, Orientation, Turn};
-use crate::settings::MAX_ORDER;
 use crate::tables::count_wrong;
 
 /// A poisoned lock means a panic elsewhere while the data was whole: go on with it.

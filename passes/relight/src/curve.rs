@@ -1,7 +1,8 @@
 //! The knobs' sweep for the report, and the counts that do not depend on the machine.
 
 use crate::kernels::{Source, vertices_per_workgroup};
-use crate::settings::{MAX_ORDER, Method, Output, Settings, Storage};
+use crate::order::MAX_ORDER;
+use crate::settings::{Method, Output, Settings, Storage};
 
 /// Every setting of the error/time curve: orders, storages and methods, for colours under uniform light.
 #[must_use]

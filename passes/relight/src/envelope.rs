@@ -6,7 +6,7 @@ use airglow_gpu::{ComputePipeline, Context, GpuError, GraphicsPipeline, Outside,
 
 use crate::RelightError;
 use crate::kernels::{self, Kernel, Source};
-use crate::relight::RECTANGLE_FORMAT;
+use crate::pack::RECTANGLE_FORMAT;
 use crate::settings::{LightKind, Method, Output, Settings, Storage};
 
 /// Every [`Settings`] that can be made of these. What does not go together, such as normals and incident radiance, is

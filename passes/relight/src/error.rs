@@ -8,7 +8,7 @@ use airglow_math::MathError;
 #[non_exhaustive]
 pub enum RelightError {
     /// An order outside 1..=6.
-    #[error("relight: order {order} is not supported: give 1 to {max}", max = crate::settings::MAX_ORDER)]
+    #[error("relight: order {order} is not supported: give 1 to {max}", max = crate::order::MAX_ORDER)]
     Order {
         /// The order that was asked for.
         order: usize,

@@ -11,11 +11,11 @@ use glam::DQuat;
 
 use crate::RelightError;
 use crate::bench::{Bench, Texels};
+use crate::constants::Pair;
 use crate::envelope::compute;
 use crate::kernels;
+use crate::order::MAX_ORDER;
 use crate::rotation::{OPEN, RotateConstants, Turn, normalised};
-use crate::settings::MAX_ORDER;
-use crate::stage::Pair;
 use crate::tables::tensor;
 
 /// Rows of one dispatch: the least that a device offers is 65535 workgroups.

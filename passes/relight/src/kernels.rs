@@ -255,7 +255,7 @@ fn vertex_bindings(settings: &Settings, source: Source) -> &'static [Binding] {
 #[must_use]
 pub fn all() -> Vec<Kernel> {
     let mut kernels = Vec::new();
-    for order in 1..=crate::settings::MAX_ORDER {
+    for order in 1..=crate::order::MAX_ORDER {
         let rows = [environment_rows, counted_environment_rows];
         kernels.extend(rows.map(|kernel| kernel(order)));
         kernels.extend([environment_bands, rotate, product, product_matrix].map(|kernel| kernel(order)));

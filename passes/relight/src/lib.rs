@@ -37,6 +37,7 @@
 
 mod bench;
 mod builder;
+mod constants;
 mod control;
 pub mod curve;
 mod declare;
@@ -46,6 +47,7 @@ pub mod eval;
 mod frame;
 pub mod kernels;
 mod mesh;
+mod order;
 pub mod pack;
 mod prepare;
 mod preset;
@@ -69,10 +71,11 @@ pub use envelope::{Envelope, Pipelines};
 pub use error::RelightError;
 pub use frame::{Environment, Frame, Instance, Light, Relit, ResultRange};
 pub use mesh::MeshId;
+pub use order::MAX_ORDER;
 pub use record::Bindings;
 pub use relight::{HEALTH, Relight};
 pub use rotation::{Orientation, instance_rotation, object_space};
-pub use settings::{LightKind, MAX_ORDER, Method, Output, Settings, Storage};
+pub use settings::{LightKind, Method, Output, Settings, Storage};
 pub use shown::Shown;
 pub use stage::{Need, Prepared, Resource, Stage, Use};
 pub use tables::check_environment;

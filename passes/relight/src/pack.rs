@@ -1,5 +1,6 @@
 //! How the baked vectors of a chunk of vertices lie on the device, and how many vertices a chunk has.
 
+use airglow_gpu::ash::vk;
 use half::f16;
 
 use crate::settings::{LightKind, Settings, Storage};
@@ -11,6 +12,9 @@ pub const VERTEX_ALIGNMENT: u32 = 64;
 /// Pixels in a row of the packed rectangle of the fragment method; a multiple of [`VERTEX_ALIGNMENT`], and the
 /// constant of the same name in `colour.frag`.
 pub const RECTANGLE_WIDTH: u32 = 1024;
+
+/// Format of the packed rectangle: what the vertex buffer holds.
+pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// How the words of a chunk follow one another; README.md has the measurement. A word is one f32 or two f16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -80,6 +84,33 @@ impl Layout {
             }
         }
         packed
+    }
+}
+
+impl Settings {
+    /// Bytes of a vertex's baked vector on the device.
+    #[must_use]
+    pub fn vector_bytes(&self) -> u64 {
+        4 * Layout::DEFAULT.words(self.order, self.storage) as u64
+    }
+
+    /// Bytes that the baked vectors of a mesh take until its first frame is recorded: on the device, and once more while
+    /// they are copied there.
+    #[must_use]
+    pub fn mesh_bytes(&self, vertices: u32) -> u64 {
+        2 * u64::from(vertices).next_multiple_of(u64::from(VERTEX_ALIGNMENT)) * self.vector_bytes()
+    }
+
+    /// The settings nearest below these whose vectors for a mesh fit `bytes`: half floats before a lower order, which
+    /// costs more error. A vector of a lower order is the beginning of one of a higher. None when not even order 1
+    /// fits.
+    #[must_use]
+    pub fn next_that_fits(&self, vertices: u32, bytes: u64) -> Option<Self> {
+        let below = (1..=self.order)
+            .flat_map(|order| [Storage::F16, Storage::F32].map(|storage| Self { order, storage, ..*self }));
+        below
+            .filter(|settings| settings.mesh_bytes(vertices) <= bytes)
+            .max_by_key(|settings| (settings.order, settings.vector_bytes()))
     }
 }
 
@@ -184,5 +215,19 @@ mod tests {
         }
         let tiny = ChunkLimits { storage_range: 1 << 10, ..limits };
         assert_eq!(chunk_vertices(&settings, &tiny, VERTEX_ALIGNMENT), None);
+    }
+
+    #[test]
+    fn the_nearest_settings_below_that_fit_are_next() {
+        let settings = Settings::default();
+        // 100 vertices take the place of 128: order 4 holds 16 values of 4 bytes a vertex, twice.
+        assert_eq!(settings.mesh_bytes(100), 2 * 128 * 64);
+        let next = |bytes| settings.next_that_fits(100, bytes).map(|next| (next.order, next.storage));
+        assert_eq!(next(2 * 128 * 64), Some((4, Storage::F32)));
+        assert_eq!(next(2 * 128 * 64 - 1), Some((4, Storage::F16)));
+        // Nine values of order 3 are padded to twelve of 2 bytes, those of order 2 are four of 4.
+        assert_eq!(next(2 * 128 * 32 - 1), Some((3, Storage::F16)));
+        assert_eq!(next(2 * 128 * 24 - 1), Some((2, Storage::F32)));
+        assert_eq!(next(2 * 128 * 8 - 1), None);
     }
 }

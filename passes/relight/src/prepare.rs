@@ -6,16 +6,17 @@ use airglow_graph::{Access, ImageDesc, PassKind, ResourceDesc, State};
 
 use crate::RelightError;
 use crate::builder::Builder;
+use crate::constants::Pair;
 use crate::control::{Once, Rotations};
 use crate::envelope::LightPipelines;
 use crate::frame::{Environment, Frame, Instance, Light, ResultRange};
 use crate::mesh::Mesh;
-use crate::pack::RECTANGLE_WIDTH;
-use crate::relight::{RECTANGLE_FORMAT, Relight, alignment};
+use crate::pack::{RECTANGLE_FORMAT, RECTANGLE_WIDTH};
+use crate::relight::{Relight, alignment};
 use crate::rotation::{LightFrame, Orientation};
 use crate::settings::{LightKind, Method, Output};
 use crate::shown::Shown;
-use crate::stage::{Need, Pair, Prepared, Resource, Work};
+use crate::stage::{Need, Prepared, Resource, Work};
 use crate::tables::map_frame;
 
 /// The environment's light between frames: any vertex, fragment or compute shader may read it.

@@ -9,7 +9,7 @@ use crate::kernels::WORKGROUP;
 use crate::pack::RECTANGLE_WIDTH;
 use crate::rotation::RotateConstants;
 use crate::shown::Shown;
-use crate::stage::{Bound, ChunkWork, Need, Pair, Prepared, Resource, Stage, Use, Work};
+use crate::stage::{Bound, ChunkWork, Need, Prepared, Resource, Stage, Use, Work};
 
 /// The resources of a frame: the host's, and the scratch a host without a graph makes.
 #[derive(Clone, Default)]
@@ -265,10 +265,4 @@ fn draw_rectangle(
         recorder.draw(0..3, 0..1)?;
     }
     recorder.end_rendering()
-}
-
-impl Pair {
-    pub(crate) fn new(first: u32, second: u32) -> Self {
-        Self { first, second }
-    }
 }

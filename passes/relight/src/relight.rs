@@ -13,13 +13,10 @@ use crate::control::Projected;
 use crate::envelope::{LightPipelines, Pipelines, VertexPipeline, kernels_of, of_light, of_vertices};
 use crate::kernels::Source;
 use crate::mesh::{Mesh, MeshId, Meshes};
-use crate::pack::{ChunkLimits, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
+use crate::pack::{ChunkLimits, RECTANGLE_FORMAT, RECTANGLE_WIDTH, VERTEX_ALIGNMENT, chunk_vertices};
 use crate::resident::{OWNER, Resident};
 use crate::settings::{LightKind, Method, Output, Settings};
 use crate::tables::{MapTables, tensor};
-
-/// Format of the packed rectangle: what the vertex buffer holds.
-pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// What is counted with [`Settings::health`]: texels of the environment with a component that is not finite, which counts
 /// as 0, and others with one below 0, which is taken as it is.

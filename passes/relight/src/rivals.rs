@@ -10,10 +10,10 @@ use airglow_graph::{Access, BufferDesc, Graph, Handle, PassKind};
 use bytemuck::Pod;
 
 use crate::RelightError;
+use crate::constants::ChunkConstants;
 use crate::pack::{Layout, VERTEX_ALIGNMENT};
 use crate::resident::{OWNER, Resident};
 use crate::settings::Storage;
-use crate::stage::ChunkConstants;
 
 /// The order that all rivals are compiled for.
 pub const ORDER: usize = 4;

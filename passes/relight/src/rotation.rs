@@ -4,8 +4,8 @@ use airglow_math::{MathError, World};
 use glam::{DMat3, DQuat};
 
 use crate::RelightError;
-use crate::settings::MAX_ORDER;
-use crate::stage::Pair;
+use crate::constants::Pair;
+use crate::order::MAX_ORDER;
 
 /// How far a matrix may be from a scaled rotation, relative to its scale.
 const TOLERANCE: f64 = 1e-4;

@@ -1,10 +1,7 @@
 //! The knobs of relighting: range, default and its reason.
 
 use crate::RelightError;
-use crate::pack::{Layout, VERTEX_ALIGNMENT};
-
-/// The highest order with kernels.
-pub const MAX_ORDER: usize = 6;
+use crate::order::MAX_ORDER;
 
 /// How the vectors of a mesh are stored on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -103,31 +100,6 @@ impl Settings {
         }
     }
 
-    /// Bytes of a vertex's baked vector on the device.
-    #[must_use]
-    pub fn vector_bytes(&self) -> u64 {
-        4 * Layout::DEFAULT.words(self.order, self.storage) as u64
-    }
-
-    /// Bytes that the baked vectors of a mesh take until its first frame is recorded: on the device, and once more while
-    /// they are copied there.
-    #[must_use]
-    pub fn mesh_bytes(&self, vertices: u32) -> u64 {
-        2 * u64::from(vertices).next_multiple_of(u64::from(VERTEX_ALIGNMENT)) * self.vector_bytes()
-    }
-
-    /// The settings nearest below these whose vectors for a mesh fit `bytes`: half floats before a lower order, which
-    /// costs more error. A vector of a lower order is the beginning of one of a higher. None when not even order 1
-    /// fits.
-    #[must_use]
-    pub fn next_that_fits(&self, vertices: u32, bytes: u64) -> Option<Self> {
-        let below = (1..=self.order)
-            .flat_map(|order| [Storage::F16, Storage::F32].map(|storage| Self { order, storage, ..*self }));
-        below
-            .filter(|settings| settings.mesh_bytes(vertices) <= bytes)
-            .max_by_key(|settings| (settings.order, settings.vector_bytes()))
-    }
-
     /// Whether light meets visibility, in some kernel that the settings can need.
     pub(crate) fn shadows(&self) -> bool {
         self.visibility || self.output == Output::Incident
@@ -154,24 +126,5 @@ impl Settings {
             });
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_settings_below_that_fit_are_next() {
-        let settings = Settings::default();
-        // 100 vertices take the place of 128: order 4 holds 16 values of 4 bytes a vertex, twice.
-        assert_eq!(settings.mesh_bytes(100), 2 * 128 * 64);
-        let next = |bytes| settings.next_that_fits(100, bytes).map(|next| (next.order, next.storage));
-        assert_eq!(next(2 * 128 * 64), Some((4, Storage::F32)));
-        assert_eq!(next(2 * 128 * 64 - 1), Some((4, Storage::F16)));
-        // Nine values of order 3 are padded to twelve of 2 bytes, those of order 2 are four of 4.
-        assert_eq!(next(2 * 128 * 32 - 1), Some((3, Storage::F16)));
-        assert_eq!(next(2 * 128 * 24 - 1), Some((2, Storage::F32)));
-        assert_eq!(next(2 * 128 * 8 - 1), None);
     }
 }

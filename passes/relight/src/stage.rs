@@ -5,6 +5,7 @@ use std::fmt;
 use airglow_gpu::{Buffer, ComputePipeline, GraphicsPipeline};
 use airglow_graph::{Access, LeftOut, PassKind, ResourceDesc, State};
 
+use crate::constants::{ChunkConstants, Pair};
 use crate::control::{Once, Rotations};
 use crate::frame::ResultRange;
 use crate::resident::Upload;
@@ -164,23 +165,6 @@ impl ChunkWork<()> {
         let Self { instance, shadowed, pipeline: (), bound, constants, groups } = self;
         ChunkWork { instance, shadowed, pipeline, bound, constants, groups }
     }
-}
-
-/// The push constants of `chunk.glsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct ChunkConstants {
-    pub vertex_count: u32,
-    pub stride: u32,
-    pub first_row: u32,
-}
-
-/// Two `uint` push constants: a size or a pair of strides.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-pub(crate) struct Pair {
-    pub first: u32,
-    pub second: u32,
 }
 
 /// What a stage records.

@@ -7,6 +7,7 @@ use airglow_graph::{Access, PassKind};
 
 use crate::RelightError;
 use crate::builder::Builder;
+use crate::constants::ChunkConstants;
 use crate::envelope::VertexPipeline;
 use crate::frame::{Frame, Instance, ResultRange};
 use crate::kernels::{self, Kernel, Source};
@@ -15,7 +16,7 @@ use crate::pack::{Chunk, RECTANGLE_WIDTH};
 use crate::relight::Relight;
 use crate::settings::{LightKind, Method, Output};
 use crate::shown::Shown;
-use crate::stage::{Bound, ChunkConstants, ChunkWork, Resource, Work};
+use crate::stage::{Bound, ChunkWork, Resource, Work};
 
 impl Relight {
     /// The kernel over the vertices of every instance, chunk by chunk, and for the fragment method the copy.

@@ -184,7 +184,7 @@ pub fn circle(order: usize, angular_radius: f64) -> Result<[Evaluated; 2], Shado
     let height = circle::height(angular_radius)?;
     let tables = Tables::new(order, CLIP)?;
     let mut visibility = coefficients_from_factors(&table::visibility(order, height))?;
-    visibility[0] += crate::exponential::ONE;
+    visibility[0] += crate::mean::ONE;
     Ok([
         Evaluated { values: visibility, reference: circle::visibility(order, height)? },
         Evaluated {

@@ -10,10 +10,8 @@ use airglow_math::sh::product::TripleProduct;
 use crate::ShadowError;
 use crate::eigen;
 use crate::linear::Linear;
+use crate::mean::{ONE, without_mean};
 use crate::polynomial::{EXCESS, Interval, Polynomial, excess, normalized, shortening};
-
-/// `sqrt(4 pi)`, the first coefficient of the constant 1.
-pub(crate) const ONE: f64 = 3.544_907_701_811_032;
 
 /// Largest degree of a series.
 pub const MAX_DEGREE: usize = 32;
@@ -208,11 +206,6 @@ impl Evaluator {
 pub(crate) fn squarings(f: &[f64], norm: f64) -> u32 {
     let ratio = without_mean(f) / norm;
     if ratio > 1.0 { ratio.log2().ceil() as u32 } else { 0 }
-}
-
-/// `|f^|`, the norm of all coefficients but the first.
-pub(crate) fn without_mean(f: &[f64]) -> f64 {
-    f.iter().skip(1).map(|value| value * value).sum::<f64>().sqrt()
 }
 
 impl Exponential {

@@ -36,6 +36,7 @@ pub mod kernels;
 pub mod light;
 mod linear;
 mod logarithm;
+mod mean;
 mod order;
 mod pixels;
 mod polynomial;

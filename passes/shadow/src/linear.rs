@@ -8,8 +8,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::ShadowError;
 use crate::circle;
-use crate::exponential::{ONE, without_mean};
 use crate::logarithm::{CLIP, Logarithm};
+use crate::mean::{ONE, without_mean};
 
 /// Angular radii the fit is made at.
 const ANGLES: usize = 256;

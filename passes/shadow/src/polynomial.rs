@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use crate::ShadowError;
-use crate::exponential::ONE;
+use crate::mean::ONE;
 use crate::order::{MIN_ORDER, check_order};
 
 /// Largest eigenvalue of the product matrix of a vector without mean and of norm 1, by order from 3 on, rounded up: no

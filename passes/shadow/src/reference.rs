@@ -6,8 +6,9 @@ use airglow_math::sh::{evaluate, project};
 use glam::DVec3;
 
 use crate::circle::{self, Cap};
-use crate::exponential::{Evaluator, ONE};
+use crate::exponential::Evaluator;
 use crate::logarithm::{CLIP, Logarithm};
+use crate::mean::ONE;
 use crate::order::check_order;
 use crate::{Exponential, ShadowError, Sphere};
 

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::{LightConstants, most, rgb, wide};
 use crate::beam::{Ball, Region};
-use crate::frame::View;
 use crate::light::Light;
 use crate::reach::{Reach, reach, reach_of_parallel};
 use crate::settings::Settings;
+use crate::view::View;
 
 /// The constants of a light and its region, or `None` where it is too weak for any pixel. `extinction` is the least and
 /// `scattering` the largest of the channels'.

@@ -3,7 +3,7 @@
 use airglow_gpu::{BindingDesc, BindingKind, Kernel};
 use bytemuck::{Pod, Zeroable};
 
-use super::{LightShape, TexelSettings};
+use super::LightShape;
 use crate::RadianceError;
 
 macro_rules! rays {
@@ -95,9 +95,8 @@ pub struct AnalyticConstants {
     pub keep: u32,
 }
 
-/// The kernel of a shape and number of rays.
-pub(crate) fn texels(settings: TexelSettings) -> Result<Kernel, RadianceError> {
-    let TexelSettings { shape, rays, .. } = settings;
+/// The kernel of a shape and number of rays along a side of a texel.
+pub(crate) fn texels(shape: LightShape, rays: u32) -> Result<Kernel, RadianceError> {
     let module = match (of_shape(&TEXELS, shape)?, rays) {
         (kernels, 1 | 2 | 4) => kernels[rays.ilog2() as usize],
         _ => return Err(RadianceError::setting("rays", rays, "1, 2 or 4 along a side of a texel")),

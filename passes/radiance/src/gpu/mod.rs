@@ -7,7 +7,6 @@ pub mod glow;
 pub mod keep;
 pub mod kernels;
 mod layout;
-mod read;
 pub mod refinement;
 mod surfaces;
 mod texels;

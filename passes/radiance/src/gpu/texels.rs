@@ -93,7 +93,7 @@ impl Texels {
         if !(1..=512).contains(&size) {
             return Err(RadianceError::setting("face size", size, "1 to 512 texels"));
         }
-        let pipeline = find(&kernels::texels(settings)?)?;
+        let pipeline = find(&kernels::texels(settings.shape, settings.rays)?)?;
         let solid_angles = solid_angles(context, size as usize)?;
         Ok(Self { settings, pipeline, analytic: None, solid_angles })
     }

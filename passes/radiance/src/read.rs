@@ -4,8 +4,8 @@ use airglow_gpu::Buffer;
 use bytemuck::Pod;
 use glam::DVec3;
 
-use super::bench::Bench;
-use super::refinement::{RefineState, SPLIT};
+use crate::gpu::bench::Bench;
+use crate::gpu::refinement::{RefineState, SPLIT};
 use crate::stage::{Bindings, Prepared};
 use crate::{Hierarchy, RadianceError, Receiver, Refined, Sample};
 
