@@ -6,7 +6,6 @@ use std::ffi::{CString, c_char};
 use airglow_gpu::ash::vk::{BufferUsageFlags, ImageUsageFlags};
 use airglow_graph::{Access, ResourceDesc};
 
-use crate::binding::AirglowBinding;
 use crate::status::Failure;
 
 /// Where a resource of a frame comes from.
@@ -148,9 +147,8 @@ impl Uses {
         Some((row, name))
     }
 
-    /// The resource that a binding is for, with its name.
-    pub(crate) fn wanted(&self, binding: &AirglowBinding) -> Result<(&AirglowResourceInfo, &str), Failure> {
-        let (wanted, index) = (binding.resource, binding.index);
+    /// The resource of a number that the host binds, with its name.
+    pub(crate) fn wanted(&self, (wanted, index): Number) -> Result<(&AirglowResourceInfo, &str), Failure> {
         match self.find((wanted, index)) {
             Some((row, name)) if row.origin == AirglowOrigin::Library as u32 => {
                 Err(Failure::argument(name, "it is the library's own; leave it out of the bindings"))

@@ -96,7 +96,7 @@ impl<'a> Bound<'a> {
     ) -> Result<Self, Failure> {
         let mut all = scratch.to_vec();
         for binding in given {
-            let (row, name) = uses.wanted(binding)?;
+            let (row, name) = uses.wanted((binding.resource, binding.index))?;
             // SAFETY: the caller vouches for what the binding says.
             let imported = unsafe { binding.import(context, name)? };
             match (&imported, row.is_image) {

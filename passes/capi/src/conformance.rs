@@ -1,30 +1,18 @@
 //! The conformance kit for hosts in C and C++: the library's passes inside the host's own device, checked there.
 #![allow(dead_code, unused_imports, unused_macros, reason = "helpers of passes, of which there may be none")]
 
-use std::ffi::{CStr, CString, c_char, c_void};
-use std::mem::zeroed;
+use std::ffi::{CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use airglow_conformance::{HostDevice, Refusal};
-use airglow_gpu::Requirements;
+use airglow_conformance::HostDevice;
 use airglow_gpu::ash::{vk, vk::Handle};
 
-use crate::context::{AirglowAdoptInfo, AirglowContext, airglow_context_adopt, enabled};
+use crate::checks::Checks;
+use crate::context::{AirglowAdoptInfo, enabled};
 use crate::input::{Versioned, exclusive, store, versioned};
-use crate::physical::{AirglowFunction, get_instance_proc_addr};
+use crate::physical::get_instance_proc_addr;
 use crate::requirements::AirglowRequirements;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge, words};
-
-/// A check with its name; its error is what is wrong.
-type Check = (&'static CStr, fn(&HostDevice<'_>) -> Result<(), Refusal>);
-
-/// The checks of a pass.
-pub(crate) struct Checks {
-    /// What they need of a device.
-    pub requirements: fn() -> Result<Requirements, Refusal>,
-    /// Each check.
-    pub checks: &'static [Check],
-}
 
 /// Those of every pass.
 const ROOMS: &[Checks] = &[
@@ -144,7 +132,7 @@ fn run(host: &HostDevice<'_>, info: &AirglowConformanceInfo) -> u32 {
 /// A device as its host states it, without what is enabled on it.
 ///
 /// # Safety
-/// As [`airglow_context_adopt`].
+/// As `airglow_context_adopt`.
 unsafe fn stated(info: &AirglowAdoptInfo, queue: u64) -> Result<HostDevice<'static>, Failure> {
     for (name, handle) in [("instance", info.instance), ("device", info.device), ("queue", queue)] {
         if handle == 0 {
@@ -175,80 +163,4 @@ unsafe fn stated(info: &AirglowAdoptInfo, queue: u64) -> Result<HostDevice<'stat
             extensions: &[],
         })
     }
-}
-
-/// An error to be filled.
-pub(crate) fn error() -> AirglowError {
-    // SAFETY: zero bytes are a valid error, of status 0.
-    AirglowError { struct_size: size_of::<AirglowError>() as u32, ..unsafe { zeroed() } }
-}
-
-/// What an error says.
-pub(crate) fn message(error: &AirglowError) -> &str {
-    // SAFETY: messages end in a nul.
-    unsafe { CStr::from_ptr(error.message.as_ptr()) }.to_str().unwrap_or("a message that is not UTF-8")
-}
-
-/// Calls a function with an error at its end; whatever it refuses is a [`Refusal`] with its words.
-macro_rules! attempt {
-    ($function:path, $($argument:expr),*) => {{
-        let mut error = $crate::conformance::error();
-        // SAFETY: the kit and the tests keep the function's promises.
-        let status = unsafe { $function($($argument,)* &raw mut error) };
-        let said = || format!("{}: {}", stringify!($function), $crate::conformance::message(&error));
-        let done = status == $crate::status::AirglowStatus::Ok;
-        done.then_some(()).ok_or_else(|| airglow_conformance::Refusal::from(said()))
-    }};
-}
-pub(crate) use attempt;
-
-/// A square of ground, for passes that light vertices.
-pub(crate) fn ground() -> Vec<[f32; 3]> {
-    (0..300).map(|i| [(i % 20) as f32, 0.0, (i / 20) as f32]).collect()
-}
-
-/// A function of Vulkan as the header has it.
-pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {
-    // SAFETY: function pointers of one size, and cast back before they are called.
-    unsafe { std::mem::transmute_copy(&function) }
-}
-
-/// What a host states of its device; extensions and features are added by [`adopt`].
-pub(crate) fn adopt_info(host: &HostDevice<'_>) -> AirglowAdoptInfo {
-    AirglowAdoptInfo {
-        struct_size: size_of::<AirglowAdoptInfo>() as u32,
-        api_version: host.api_version,
-        get_instance_proc_addr: function(host.get_instance_proc_addr),
-        get_device_proc_addr: function(host.get_device_proc_addr),
-        instance: host.instance.as_raw(),
-        physical_device: host.physical_device.as_raw(),
-        device: host.device.as_raw(),
-        queue_family: host.queue_family,
-        frames_in_flight: 1,
-        // SAFETY: zero bytes are a valid description.
-        ..unsafe { zeroed() }
-    }
-}
-
-/// Adopts a host's device for what `requirements` ask.
-pub(crate) fn adopt(
-    host: &HostDevice<'_>,
-    requirements: *const AirglowRequirements,
-) -> Result<*mut AirglowContext, Refusal> {
-    let names = |texts: &[&str]| texts.iter().map(|text| CString::new(*text)).collect::<Result<Vec<_>, _>>();
-    let extensions = names(host.extensions)?;
-    let features = names(&host.features.iter().map(|feature| feature.name()).collect::<Vec<_>>())?;
-    let extension_names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
-    let feature_names: Vec<_> = features.iter().map(|name| name.as_ptr()).collect();
-    let info = AirglowAdoptInfo {
-        requirements,
-        extension_names: extension_names.as_ptr(),
-        extension_count: extension_names.len(),
-        feature_names: feature_names.as_ptr(),
-        feature_count: feature_names.len(),
-        ..adopt_info(host)
-    };
-    let mut context = std::ptr::null_mut();
-    attempt!(airglow_context_adopt, &raw const info, &raw mut context)?;
-    Ok(context)
 }

@@ -10,6 +10,8 @@ pub mod allocator;
 pub mod bake;
 pub mod binding;
 #[cfg(any(test, feature = "conformance"))]
+mod checks;
+#[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 pub mod context;
 #[cfg(feature = "fog")]

@@ -8,8 +8,6 @@ use std::ptr;
 
 use airglow_gpu::GpuError;
 
-use crate::text::beginning;
-
 /// How a call went.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,4 +148,10 @@ unsafe fn write(error: *mut AirglowError, status: AirglowStatus, vulkan_result: 
         ptr::copy_nonoverlapping(kept.as_ptr(), message, kept.len());
         message.add(kept.len()).write(0);
     }
+}
+
+/// As much of a text as `room` bytes hold, without half a character.
+pub(crate) fn beginning(text: &str, room: usize) -> &str {
+    let end = (0..=room.min(text.len())).rev().find(|&end| text.is_char_boundary(end));
+    &text[..end.unwrap_or(0)]
 }

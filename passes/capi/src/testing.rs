@@ -14,7 +14,7 @@ static ALLOCATOR: Counting = Counting;
 /// Calls a function with an error at its end, and fails the test with the message.
 macro_rules! call {
     ($($words:tt)*) => {
-        $crate::conformance::attempt!($($words)*).unwrap()
+        $crate::through_c::attempt!($($words)*).unwrap()
     };
 }
 pub(crate) use call;
@@ -22,10 +22,10 @@ pub(crate) use call;
 /// Calls a function with an error at its end, which must be this status; returns the message.
 macro_rules! refused {
     ($status:ident, $function:path, $($argument:expr),*) => {{
-        let mut error = $crate::conformance::error();
+        let mut error = $crate::through_c::error();
         // SAFETY: what is refused is refused before it is used.
         let status = unsafe { $function($($argument,)* &raw mut error) };
-        let said = $crate::conformance::message(&error).to_owned();
+        let said = $crate::through_c::message(&error).to_owned();
         assert_eq!((status, error.status), (AirglowStatus::$status, AirglowStatus::$status), "{said}");
         assert!(!said.is_empty(), "{} says nothing", stringify!($function));
         said

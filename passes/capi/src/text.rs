@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::ptr;
 
 use crate::input::{check_pointer, exclusive};
-use crate::status::{AirglowStatus, Failure};
+use crate::status::{AirglowStatus, Failure, beginning};
 
 /// A text of the library in memory of the caller. With `data` null and `capacity` 0, a call only says the length.
 #[repr(C)]
@@ -36,12 +36,6 @@ pub(crate) unsafe fn write_text(target: *mut AirglowText, text: &str) -> Result<
         target.data.add(kept.len()).write(0);
         if kept.len() < text.len() { incomplete("text", text.len() + 1, target.capacity) } else { Ok(()) }
     }
-}
-
-/// As much of a text as `room` bytes hold, without half a character.
-pub(crate) fn beginning(text: &str, room: usize) -> &str {
-    let end = (0..=room.min(text.len())).rev().find(|&end| text.is_char_boundary(end));
-    &text[..end.unwrap_or(0)]
 }
 
 /// Writes `items` to an array of the caller, `count` holding its size before and the number of items after. With a

@@ -1,6 +1,7 @@
 //! Passes made by the exported functions, as the conformance kit and the tests use them.
-#![allow(dead_code, reason = "helpers of passes, of which there may be none")]
+#![allow(dead_code, unused_imports, unused_macros, reason = "helpers of passes, of which there may be none")]
 
+use std::ffi::{CStr, CString};
 use std::mem::zeroed;
 use std::ptr::null_mut;
 
@@ -11,12 +12,38 @@ use airglow_graph::Access;
 
 use crate::access::{AirglowAccess, Number};
 use crate::binding::AirglowBinding;
-use crate::conformance::{adopt, attempt};
-use crate::context::{AirglowContext, airglow_context_drop};
+use crate::context::{AirglowAdoptInfo, AirglowContext, airglow_context_adopt, airglow_context_drop};
+use crate::physical::AirglowFunction;
 use crate::prepared::{
     AirglowPrepared, airglow_prepared_accesses, airglow_prepared_drop, airglow_prepared_record,
 };
 use crate::requirements::{AirglowRequirements, airglow_requirements_drop, airglow_requirements_new};
+use crate::status::AirglowError;
+
+/// An error to be filled.
+pub(crate) fn error() -> AirglowError {
+    // SAFETY: zero bytes are a valid error, of status 0.
+    AirglowError { struct_size: size_of::<AirglowError>() as u32, ..unsafe { zeroed() } }
+}
+
+/// What an error says.
+pub(crate) fn message(error: &AirglowError) -> &str {
+    // SAFETY: messages end in a nul.
+    unsafe { CStr::from_ptr(error.message.as_ptr()) }.to_str().unwrap_or("a message that is not UTF-8")
+}
+
+/// Calls a function with an error at its end; whatever it refuses is a [`Refusal`] with its words.
+macro_rules! attempt {
+    ($function:path, $($argument:expr),*) => {{
+        let mut error = $crate::through_c::error();
+        // SAFETY: the kit and the tests keep the function's promises.
+        let status = unsafe { $function($($argument,)* &raw mut error) };
+        let said = || format!("{}: {}", stringify!($function), $crate::through_c::message(&error));
+        let done = status == $crate::status::AirglowStatus::Ok;
+        done.then_some(()).ok_or_else(|| airglow_conformance::Refusal::from(said()))
+    }};
+}
+pub(crate) use attempt;
 
 /// A context and what was made from it.
 pub(crate) struct ThroughC {
@@ -135,4 +162,50 @@ pub(crate) fn record<'a>(
     let bindings: Vec<_> = resources.into_iter().map(|(number, given)| binding(number, given)).collect();
     let commands = recorder.command_buffer().as_raw();
     attempt!(airglow_prepared_record, prepared, commands, bindings.as_ptr(), bindings.len())
+}
+
+/// A function of Vulkan as the header has it.
+pub(crate) fn function<F: Copy>(function: F) -> AirglowFunction {
+    // SAFETY: function pointers of one size, and cast back before they are called.
+    unsafe { std::mem::transmute_copy(&function) }
+}
+
+/// What a host states of its device; extensions and features are added by [`adopt`].
+pub(crate) fn adopt_info(host: &HostDevice<'_>) -> AirglowAdoptInfo {
+    AirglowAdoptInfo {
+        struct_size: size_of::<AirglowAdoptInfo>() as u32,
+        api_version: host.api_version,
+        get_instance_proc_addr: function(host.get_instance_proc_addr),
+        get_device_proc_addr: function(host.get_device_proc_addr),
+        instance: host.instance.as_raw(),
+        physical_device: host.physical_device.as_raw(),
+        device: host.device.as_raw(),
+        queue_family: host.queue_family,
+        frames_in_flight: 1,
+        // SAFETY: zero bytes are a valid description.
+        ..unsafe { zeroed() }
+    }
+}
+
+/// Adopts a host's device for what `requirements` ask.
+pub(crate) fn adopt(
+    host: &HostDevice<'_>,
+    requirements: *const AirglowRequirements,
+) -> Result<*mut AirglowContext, Refusal> {
+    let names = |texts: &[&str]| texts.iter().map(|text| CString::new(*text)).collect::<Result<Vec<_>, _>>();
+    let extensions = names(host.extensions)?;
+    let features = names(&host.features.iter().map(|feature| feature.name()).collect::<Vec<_>>())?;
+    let extension_names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+    let feature_names: Vec<_> = features.iter().map(|name| name.as_ptr()).collect();
+    let info = AirglowAdoptInfo {
+        requirements,
+        extension_names: extension_names.as_ptr(),
+        extension_count: extension_names.len(),
+        feature_names: feature_names.as_ptr(),
+        feature_count: feature_names.len(),
+        ..adopt_info(host)
+    };
+    let mut context = null_mut();
+    attempt!(airglow_context_adopt, &raw const info, &raw mut context)?;
+    Ok(context)
 }

@@ -13,13 +13,13 @@ use airglow_math::World;
 use glam::DVec3;
 
 use crate::access::Number;
-use crate::conformance::{Checks, attempt};
+use crate::checks::Checks;
 use crate::fog::prepared::{AirglowFogResource, airglow_fog_prepare};
 use crate::fog::settings::AirglowFogSettings;
 use crate::fog::view::{AirglowFogLight, AirglowFogView};
 use crate::fog::{AirglowFog, airglow_fog_drop, airglow_fog_new, airglow_fog_require};
 use crate::prepared::AirglowPrepared;
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 
 /// What it uses, in the order of [`images`].
 pub(crate) const RESOURCES: [Number; 3] = [

@@ -79,7 +79,7 @@ fn what_no_view_is_is_refused_and_changes_nothing() {
         refused!(InvalidArgument, airglow_prepared_record, prepared, 0, null(), 0);
         let views = [&raw const clear, &raw const good, &raw const good];
         let several = made.prepare(|to| {
-            crate::conformance::attempt!(airglow_fog_prepare_views, fog, 40, 24, views.as_ptr(), 3, to)
+            crate::through_c::attempt!(airglow_fog_prepare_views, fog, 40, 24, views.as_ptr(), 3, to)
         });
         let several = several.unwrap();
         let seen: Vec<_> = uses(several).unwrap().iter().map(|used| (used.resource, used.index)).collect();

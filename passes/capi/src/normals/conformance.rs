@@ -10,7 +10,7 @@ use airglow_gpu::{Context, Label, Options, Recorder, Requirements};
 use airglow_graph::{Access, ImageDesc};
 use airglow_normals::{Build, FitSettings, NormalMap, Normals, Settings};
 
-use crate::conformance::{Checks, attempt};
+use crate::checks::Checks;
 use crate::normals::info::{AirglowNormalFormat, AirglowNormalMapInfo};
 use crate::normals::map::{
     AirglowLobeTexture, AirglowNormalMap, airglow_normal_map_drop, airglow_normal_map_new,
@@ -20,7 +20,7 @@ use crate::normals::prepared::airglow_normal_map_prepare;
 use crate::normals::settings::AirglowNormalsSettings;
 use crate::normals::{AirglowNormals, airglow_normals_drop, airglow_normals_new, airglow_normals_require};
 use crate::prepared::AirglowPrepared;
-use crate::through_c::{ThroughC, record};
+use crate::through_c::{ThroughC, attempt, record};
 
 /// Few, since compiling their kernel is most of the time.
 const LOBES: usize = 2;

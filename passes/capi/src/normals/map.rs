@@ -10,9 +10,8 @@ use airglow_graph::{Access, Graph};
 use airglow_normals::cache::{self, PackedChain};
 use airglow_normals::{Build, HEALTH, LobeTexture, NormalMap, Settings};
 
-use super::AirglowNormals;
 use super::info::AirglowNormalMapInfo;
-use super::prepared::PASS;
+use super::{AirglowNormals, PASS};
 use crate::health::AirglowHealth;
 use crate::input::{shared, store, string, take, versioned};
 use crate::pass::give;

@@ -28,6 +28,9 @@ pub struct AirglowNormals {
     normals: Normals,
 }
 
+/// The pass, as errors and counters name it.
+const PASS: &str = "normals";
+
 refusals!(NormalsError);
 
 /// Adds what the pass asks of a device with these settings.

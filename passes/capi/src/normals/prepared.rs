@@ -3,6 +3,7 @@
 use airglow_gpu::Recorder;
 use airglow_normals::{Build, Resource, Stage};
 
+use super::PASS;
 use super::map::AirglowNormalMap;
 use crate::access::{self, AirglowOrigin, Step, Uses, What};
 use crate::binding::Bound;
@@ -20,9 +21,6 @@ pub enum AirglowNormalsResource {
     /// A buffer; the index counts them, the name says which.
     Own = 1,
 }
-
-/// The pass.
-pub(super) const PASS: &str = "normals";
 
 /// Steps of a build.
 struct NormalsFrame(Vec<Stage>);

@@ -12,10 +12,10 @@ use super::info::*;
 use super::map::*;
 use super::prepared::airglow_normal_map_prepare;
 use super::*;
-use crate::conformance::attempt;
 use crate::health::airglow_health_drop;
 use crate::prepared::*;
 use crate::testing::{call, refused, sizes_refused, text, with_host};
+use crate::through_c::attempt;
 
 #[test]
 fn null_is_refused_everywhere() {

@@ -13,7 +13,7 @@ use airglow_radiance::{Hierarchy, Lights, Part, PassSettings, Radiance, Receiver
 use glam::{DMat3, DVec3};
 
 use crate::access::Number;
-use crate::conformance::{Checks, attempt, ground};
+use crate::checks::{Checks, ground};
 use crate::prepared::AirglowPrepared;
 use crate::radiance::lights::{AirglowEmitter, AirglowEmitterSphere, AirglowRadianceLights};
 use crate::radiance::prepared::{AirglowRadianceResource, airglow_radiance_prepare};
@@ -26,7 +26,7 @@ use crate::radiance::{
     AirglowRadiance, airglow_radiance_drop, airglow_radiance_new, airglow_radiance_require,
 };
 use crate::requirements::AirglowRequirements;
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 
 /// The least that has kernels: compiling them is most of the time.
 pub(crate) const ORDER: usize = 3;

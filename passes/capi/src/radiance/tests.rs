@@ -68,7 +68,7 @@ fn what_no_receiver_and_no_light_is_is_refused_and_named() {
 }
 
 fn receivers_are_refused(radiance: *const AirglowRadiance) {
-    let ground = crate::conformance::ground();
+    let ground = crate::checks::ground();
     let good = AirglowRadianceReceiverInfo {
         struct_size: size_of::<AirglowRadianceReceiverInfo>() as u32,
         positions: ground.as_ptr().cast(),

@@ -12,19 +12,20 @@ use airglow_relight::{Environment, Frame, Instance, Light, MeshId, Relight, Sett
 use glam::DQuat;
 
 use crate::access::Number;
-use crate::conformance::{Checks, attempt};
+use crate::checks::Checks;
 use crate::pass::Settings as _;
 use crate::prepared::{AirglowPrepared, airglow_prepared_make_scratch};
+use crate::relight::checked::{made, numbers};
 use crate::relight::frame::{AirglowLight, AirglowRelightFrame, AirglowRelightInstance};
 use crate::relight::prepared::airglow_relight_prepare;
 use crate::relight::resources::AirglowRelightResource;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::relight::{
-    AirglowRelight, airglow_relight_add_mesh, airglow_relight_drop, airglow_relight_new,
-    airglow_relight_require, airglow_relight_set_environment, airglow_relight_set_world,
+    AirglowRelight, airglow_relight_add_mesh, airglow_relight_require, airglow_relight_set_environment,
+    airglow_relight_set_world,
 };
 use crate::status::Failure;
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 use crate::world::{AirglowAxis, AirglowWorld};
 
 const WIDTH: u32 = 32;
@@ -32,11 +33,6 @@ const HEIGHT: u32 = 16;
 const VERTICES: u32 = 1500;
 /// About +Y by 0.7.
 const ROTATION: [f64; 4] = [0.0, 0.342_897_807_455_451_34, 0.0, 0.939_372_712_847_378_9];
-
-/// Numbers in [0, 1): the fractional parts of multiples of the golden ratio.
-pub(crate) fn numbers(count: usize, first: f64) -> Vec<f32> {
-    (0..count).map(|i| (first + i as f64 * 0.618_033_988_749_894_9).fract() as f32).collect()
-}
 
 fn sky() -> Vec<[f32; 3]> {
     numbers((3 * WIDTH * HEIGHT) as usize, 0.3).chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
@@ -96,15 +92,6 @@ pub(crate) fn in_c(
     let mut through_c = ThroughC::adopt(host, asked)?;
     let relight = made(&mut through_c, settings)?;
     Ok((through_c, relight))
-}
-
-/// The same in a context that is there.
-pub(crate) fn made(
-    through_c: &mut ThroughC,
-    settings: &AirglowRelightSettings,
-) -> Result<*mut AirglowRelight, Refusal> {
-    let context = through_c.context;
-    through_c.hold(airglow_relight_drop, |relight| attempt!(airglow_relight_new, context, settings, relight))
 }
 
 impl Room for Both {

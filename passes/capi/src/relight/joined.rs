@@ -14,12 +14,12 @@ use airglow_shadow::{Blockers, Receivers, Shadow};
 use glam::DMat4;
 
 use crate::access::Number;
-use crate::conformance::{attempt, ground};
+use crate::checks::ground;
 use crate::pass::Settings as _;
 use crate::prepared::{AirglowPrepared, airglow_prepared_make_scratch};
 use crate::radiance::conformance::{self as radiance, LIGHTS, ORDER};
 use crate::radiance::prepared::AirglowRadianceResource as Emitted;
-use crate::relight::conformance::{made, numbers};
+use crate::relight::checked::{made, numbers};
 use crate::relight::frame::*;
 use crate::relight::prepared::airglow_relight_prepare;
 use crate::relight::resources::AirglowRelightResource as Relit;
@@ -27,7 +27,7 @@ use crate::relight::settings::{AirglowLightKind, AirglowRelightSettings};
 use crate::relight::{airglow_relight_add_mesh, airglow_relight_require};
 use crate::shadow::conformance::{self as shadow, SPHERES};
 use crate::shadow::prepared::AirglowShadowResource as Shadowed;
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 
 const LIGHT: Number = (Emitted::VertexLight as u32, 0);
 const POSITIONS: Number = (Shadowed::Positions as u32, 0);

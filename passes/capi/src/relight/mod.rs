@@ -2,6 +2,8 @@
 //! uses of resources as data, then commands in the host's own command buffer.
 
 #[cfg(any(test, feature = "conformance"))]
+mod checked;
+#[cfg(any(test, feature = "conformance"))]
 pub(crate) mod conformance;
 pub mod frame;
 pub mod health;

@@ -12,7 +12,7 @@ use airglow_shadow::{ACCESSES, Blockers, Receivers, Settings, Shadow, Sphere};
 use glam::{DMat4, DVec3};
 
 use crate::access::Number;
-use crate::conformance::{Checks, attempt, ground};
+use crate::checks::{Checks, ground};
 use crate::prepared::AirglowPrepared;
 use crate::requirements::AirglowRequirements;
 use crate::shadow::prepared::{
@@ -23,7 +23,7 @@ use crate::shadow::{
     AirglowShadow, AirglowShadowReceivers, airglow_shadow_drop, airglow_shadow_new,
     airglow_shadow_receivers_drop, airglow_shadow_receivers_new, airglow_shadow_require,
 };
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 
 /// The least that has a kernel: compiling it is most of the time.
 pub(crate) const ORDER: usize = 3;

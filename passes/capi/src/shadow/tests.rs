@@ -164,7 +164,7 @@ fn hierarchies_give_the_bits_of_rust_and_bad_receivers_are_counted() {
     let set: Vec<_> =
         (0..6).map(|i| AirglowSphere { center: [f64::from(i), 1.5, 3.0], radius: 0.4 }).collect();
     let tree = made.hold(airglow_sphere_hierarchy_drop, |to| {
-        crate::conformance::attempt!(airglow_sphere_hierarchy_new, passes.0, set.as_ptr(), set.len(), to)
+        crate::through_c::attempt!(airglow_sphere_hierarchy_new, passes.0, set.as_ptr(), set.len(), to)
     });
     let sets = [
         AirglowSphereSet { hierarchy: tree.unwrap(), spheres: set.as_ptr(), sphere_count: set.len() },
@@ -177,15 +177,14 @@ fn hierarchies_give_the_bits_of_rust_and_bad_receivers_are_counted() {
     let said =
         refused!(InvalidArgument, airglow_shadow_set_sets, prepared, &raw const short, 1, null(), null_mut());
     assert!(said.contains("spheres of the set"), "{said}");
-    let health = made.hold(airglow_health_drop, |to| {
-        crate::conformance::attempt!(airglow_shadow_health_new, passes.0, to)
-    });
+    let health = made
+        .hold(airglow_health_drop, |to| crate::through_c::attempt!(airglow_shadow_health_new, passes.0, to));
     let health = health.unwrap();
 
-    let mut ground = crate::conformance::ground();
+    let mut ground = crate::checks::ground();
     ground[7][1] = f32::NAN;
     let shadow = Shadow::new(&context, rust_settings()).unwrap();
-    let receivers = shadow.receivers(&context, "ground", &crate::conformance::ground()).unwrap();
+    let receivers = shadow.receivers(&context, "ground", &crate::checks::ground()).unwrap();
     let buffer = |size: u64, location| {
         let usage = Access::ComputeStorageWrite.buffer_usage() | Access::TransferSource.buffer_usage();
         context.create_buffer(Label::new("host", "buffer"), &BufferDesc { size, usage }, location).unwrap()

@@ -14,9 +14,8 @@ use super::{
     airglow_fog_background_drop, airglow_fog_background_new, airglow_fog_background_prepare,
     airglow_fog_background_require,
 };
-use crate::conformance::attempt;
 use crate::prepared::AirglowPrepared;
-use crate::through_c::{ThroughC, ends, record};
+use crate::through_c::{ThroughC, attempt, ends, record};
 
 const FORMAT: Format = Format::R32G32B32A32_SFLOAT;
 const SIZE: [u32; 2] = [16, 8];

@@ -12,7 +12,6 @@ use airglow_tests::conformance::Given;
 use airglow_tests::device::{open, stated};
 
 use super::{call, in_c, refused, settings};
-use crate::conformance::attempt;
 use crate::context::airglow_context_begin_frame;
 use crate::prepared::*;
 use crate::relight::airglow_relight_add_mesh;
@@ -22,7 +21,7 @@ use crate::relight::prepared::airglow_relight_prepare;
 use crate::relight::resources::AirglowRelightResource;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::status::AirglowStatus;
-use crate::through_c::record;
+use crate::through_c::{attempt, record};
 
 #[test]
 fn bad_texels_of_a_live_environment_are_counted() {

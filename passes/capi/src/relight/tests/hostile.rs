@@ -8,7 +8,6 @@ use airglow_gpu::ash::vk::{self, Handle};
 
 use super::{adopt_info, call, refused, requirements, settings, with_host};
 use crate::bake::{AirglowBakeInfo, airglow_bake};
-use crate::conformance::{error, function, message};
 use crate::context::*;
 use crate::input::{array, versioned};
 use crate::needs::AirglowNeed;
@@ -23,6 +22,7 @@ use crate::relight::*;
 use crate::requirements::*;
 use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 use crate::text::AirglowText;
+use crate::through_c::{error, function, message};
 use crate::world::airglow_world_check;
 use airglow_tests::conformance::HostDevice;
 

@@ -13,11 +13,11 @@ use airglow_tests::conformance::HostDevice;
 
 use super::airglow_relight_require;
 use super::conformance::{in_c, settings};
-use crate::conformance::adopt_info;
 use crate::pass::Settings as _;
 use crate::relight::settings::AirglowRelightSettings;
 use crate::requirements::{AirglowRequirements, airglow_requirements_new};
 use crate::testing::{call, refused, text};
+use crate::through_c::adopt_info;
 
 /// Runs `test` with a host's device.
 fn with_host(test: impl FnOnce(&HostDevice<'_>)) {
