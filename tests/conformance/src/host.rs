@@ -3,42 +3,16 @@
 use super::elsewhere::check_families;
 use super::roads::{Prepare, by_graph, by_record, fill, read_back};
 use super::{Content, Given, HostResource, Outputs, Refusal, Road, Room, check_layouts};
+use crate::device::HostDevice;
 use crate::shim::{Call, Shim};
 use airglow_gpu::ash::{self, vk};
-use airglow_gpu::{
-    AdoptInfo, Context, Execution, FeatureSet, Label, Options, Readback, Recorder, Requirements,
-};
+use airglow_gpu::{AdoptInfo, Context, Execution, Label, Options, Readback, Recorder, Requirements};
 
 /// A host on a device.
 pub(super) struct Host<'a> {
     pub(super) stated: HostDevice<'a>,
     pub(super) device: ash::Device,
     pub(super) pool: vk::CommandPool,
-}
-
-/// A host's device as it states it.
-#[derive(Clone, Copy)]
-pub struct HostDevice<'a> {
-    /// The loader's function.
-    pub get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
-    /// The device's function; a room gets one with the kit listening behind it.
-    pub get_device_proc_addr: vk::PFN_vkGetDeviceProcAddr,
-    /// The instance.
-    pub instance: vk::Instance,
-    /// API version of the instance.
-    pub api_version: u32,
-    /// The physical device.
-    pub physical_device: vk::PhysicalDevice,
-    /// The device.
-    pub device: vk::Device,
-    /// Family of the queue that commands are submitted to.
-    pub queue_family: u32,
-    /// The queue: it does graphics, compute and transfer.
-    pub queue: vk::Queue,
-    /// Features enabled.
-    pub features: FeatureSet,
-    /// Extensions enabled.
-    pub extensions: &'a [&'a str],
 }
 
 /// What the host made, with its memory; destroyed with it.

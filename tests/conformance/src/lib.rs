@@ -6,6 +6,7 @@
 
 mod changes;
 mod declared;
+mod device;
 mod elsewhere;
 mod faults;
 mod host;
@@ -25,9 +26,9 @@ use std::error::Error;
 
 pub use changes::{Make, change_on};
 pub use declared::{Declared, Named, copy_mips};
+pub use device::HostDevice;
 pub use elsewhere::Elsewhere;
 pub use faults::fail_on;
-pub use host::HostDevice;
 pub use orders::shuffle_on;
 pub use prepared::{MakePrepared, prepare_on};
 pub use staged::stage_on;

@@ -7,7 +7,7 @@ mod kept;
 mod memory;
 mod table;
 
-use crate::HostDevice;
+use crate::device::HostDevice;
 use airglow_gpu::ash::vk;
 use std::collections::BTreeMap;
 use std::ffi::{CStr, c_char};

@@ -3,14 +3,12 @@
 use airglow_gpu::Record;
 use airglow_graph::{Access, Buffer, BufferDesc, Graph, Handle, LeftOut, PassKind};
 
+use crate::record::COLOUR_BYTES;
 use crate::{Bindings, Settings, __Room__};
 
 /// What the pass does with its resources, in the order of [`Bindings`]: for a host with a frame graph of its own.
 pub const ACCESSES: [(&str, Access); 2] =
     [("colours", Access::ComputeStorageRead), ("exposed", Access::ComputeStorageWrite)];
-
-/// Bytes of an RGBA32F colour.
-pub(crate) const COLOUR_BYTES: u64 = 16;
 
 /// Declares the pass over `count` colours; `payload` makes what it carries from the handles of [`ACCESSES`].
 ///

@@ -7,10 +7,12 @@ use airglow_gpu::GpuError;
 #[non_exhaustive]
 pub enum __Room__Error {
     /// An exposure out of range.
-    #[error("__room__: an exposure of {stops} stops: give -{max} to {max}", max = crate::MAX_STOPS)]
+    #[error("__room__: an exposure of {stops} stops: give -{most} to {most}")]
     Stops {
         /// The exposure that was asked for.
         stops: f64,
+        /// The most that is accepted.
+        most: f64,
     },
     /// A refusal of the device layer.
     #[error("__room__: {0}")]

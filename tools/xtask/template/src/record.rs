@@ -6,8 +6,10 @@ use airglow_gpu::{
 };
 use bytemuck::{Pod, Zeroable};
 
-use crate::declare::COLOUR_BYTES;
 use crate::{Settings, __Room__Error};
+
+/// Bytes of an RGBA32F colour.
+pub(crate) const COLOUR_BYTES: u64 = 16;
 
 /// Invocations of a workgroup, as the shader states them.
 const WORKGROUP: u32 = 64;

@@ -30,6 +30,7 @@ impl Settings {
     /// # Errors
     /// [`__Room__Error::Stops`].
     pub fn check(&self) -> Result<(), __Room__Error> {
-        if self.stops.abs() <= MAX_STOPS { Ok(()) } else { Err(__Room__Error::Stops { stops: self.stops }) }
+        let Self { stops } = *self;
+        if stops.abs() <= MAX_STOPS { Ok(()) } else { Err(__Room__Error::Stops { stops, most: MAX_STOPS }) }
     }
 }
