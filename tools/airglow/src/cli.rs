@@ -1,6 +1,6 @@
 //! The command line: what can be asked, in words that need no prior knowledge of the project.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
 #[cfg(all(feature = "normals", feature = "relight"))]
 use crate::commands::maps;
@@ -11,6 +11,9 @@ use crate::commands::{bake, compare, devices, requirements};
 use crate::commands::{eval, explain, plan, render, report, stability};
 #[cfg(all(feature = "relight", feature = "shadow"))]
 use crate::commands::{film, spheres};
+use crate::failure::Outcome;
+use crate::global::Global;
+use crate::output::Output;
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -37,25 +40,6 @@ pub struct Cli {
     pub global: Global,
     #[command(subcommand)]
     pub command: Command,
-}
-
-/// Options that every command understands, in help below the command's own.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Global options")]
-pub struct Global {
-    /// Vulkan device: its index in `airglow devices`, part of its name, or a kind (discrete, integrated,
-    /// virtual, cpu). Without it the fastest kind present is taken.
-    #[arg(long, global = true, value_name = "DEVICE")]
-    pub device: Option<String>,
-    /// Switch on the Vulkan validation layers with synchronization checks; any message fails the command.
-    #[arg(long, global = true)]
-    pub validate: bool,
-    /// Print results only: no progress bars, no remarks.
-    #[arg(long, short, global = true)]
-    pub quiet: bool,
-    /// Print results as JSON on standard output.
-    #[arg(long, global = true)]
-    pub json: bool,
 }
 
 /// What to do.
@@ -85,4 +69,36 @@ pub enum Command {
     Explain(explain::Arguments),
     #[cfg(feature = "relight")]
     Eval(eval::Arguments),
+}
+
+impl Command {
+    /// Runs the command asked for.
+    pub fn run(self, global: &Global, output: &Output) -> Outcome {
+        match self {
+            Self::Devices(arguments) => devices::run(&arguments, output),
+            Self::Requirements(arguments) => requirements::run(&arguments, output),
+            Self::Bake(arguments) => bake::run(&arguments, output),
+            #[cfg(feature = "relight")]
+            Self::Render(arguments) => render::run(&arguments, global, output),
+            #[cfg(all(feature = "view", feature = "relight"))]
+            Self::View(arguments) => view::run(&arguments, global, output),
+            #[cfg(all(feature = "relight", feature = "shadow"))]
+            Self::Film(arguments) => film::run(&arguments, global, output),
+            #[cfg(all(feature = "relight", feature = "shadow"))]
+            Self::Spheres(arguments) => spheres::run(&arguments, output),
+            #[cfg(all(feature = "normals", feature = "relight"))]
+            Self::Maps(arguments) => maps::run(&arguments, global, output),
+            Self::Compare(arguments) => compare::run(&arguments, output),
+            #[cfg(feature = "relight")]
+            Self::Plan(arguments) => plan::run(&arguments, global, output),
+            #[cfg(feature = "relight")]
+            Self::Report(arguments) => report::run(&arguments, global, output),
+            #[cfg(feature = "relight")]
+            Self::Stability(arguments) => stability::run(&arguments, global, output),
+            #[cfg(feature = "relight")]
+            Self::Explain(arguments) => explain::run(&arguments, global, output),
+            #[cfg(feature = "relight")]
+            Self::Eval(arguments) => eval::run(&arguments, global, output),
+        }
+    }
 }

@@ -20,6 +20,11 @@ pub fn read_text(path: &Path) -> Outcome<String> {
     fs::read_to_string(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
 }
 
+/// The name with everything but letters and digits replaced, and not too long.
+pub fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(48).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

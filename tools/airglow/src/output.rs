@@ -7,8 +7,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 
 /// Prints a result. A reader that has seen enough and closed the pipe (`| head`) is no failure.
 pub fn print(text: &str) -> Outcome {

@@ -2,11 +2,12 @@
 
 use clap::Args;
 
-use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
-use crate::host::transfer::{self, Account};
+use crate::host::bake;
+use crate::host::transfer::Account;
 use crate::output::Output;
-use crate::report::html::bytes;
+use crate::scene_options::SceneOptions;
+use crate::text::bytes;
 
 /// Bake the light transport of a scene: transfer vectors for each vertex, kept in the cache.
 ///
@@ -23,7 +24,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
-    let baked = transfer::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
+    let baked = bake::of_scene(&scene, &scene.quality, &arguments.scene.cache, output)?;
     let quality = scene.quality;
     output.result(&baked.accounts, |accounts| {
         let mut text =

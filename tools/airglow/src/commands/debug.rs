@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use airglow_scene::Scene;
 use airglow_scene::image_io::{write_exr, write_png_bytes};
 
-use crate::cli::Global;
 use crate::compare::legend;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::debug::{self, View};
 use crate::host::device;
-use crate::host::lighting::Source;
-use crate::host::renderer::Settings;
+use crate::host::lighting;
+use crate::host::settings::Settings;
+use crate::host::source::Source;
 use crate::output::{Output, print};
 
 /// Draws a view of a scene, or lists the views. An `.exr` gets the values themselves, without a legend; where there is
@@ -37,7 +38,7 @@ pub fn run(
         )));
     };
     let settings = Settings { samples: 1, views: 1, ..settings };
-    let values = device::with(global, &source.requirements(scene), |device| {
+    let values = device::with(global, &lighting::requirements(source, scene), |device| {
         debug::values(view, device, scene, source, settings)
     })?;
     let high = view.high.unwrap_or_else(|| values.largest());

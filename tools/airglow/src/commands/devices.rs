@@ -5,7 +5,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
-use crate::host::device::kind_name;
+use crate::host::machine::kind_name;
 use crate::output::Output;
 
 /// List the Vulkan devices of this machine, in the order of their index.

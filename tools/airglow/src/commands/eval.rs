@@ -7,11 +7,11 @@ use airglow::relight::Relight;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::eval::table::Table;
 use crate::eval::{self, Settings, relight};
 use crate::failure::{Failure, Outcome};
 use crate::files;
+use crate::global::Global;
 use crate::host::device;
 use crate::output::Output;
 

@@ -7,17 +7,19 @@ use airglow_scene::{Quality, Scene, Shadow, Storage};
 use clap::Args;
 use serde::Serialize;
 
-use crate::cli::Global;
-use crate::commands::report::Pass;
-use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
-use crate::host::{device, lighting};
+use crate::global::Global;
+use crate::host::machine::Machine;
+use crate::host::{device, relight};
 use crate::output::Output;
-use crate::report::html::bytes;
-use crate::report::model::{Curve, Machine, Point};
+use crate::report::model::{Curve, Point};
+use crate::report::pass::Pass;
 use crate::report::presets::table::{self, Row};
 use crate::report::relight::curves::Measurement;
-use crate::report::relight::workload::{Effort, Workload};
+use crate::report::relight::effort::Effort;
+use crate::report::relight::workload::Workload;
+use crate::scene_options::SceneOptions;
+use crate::text::bytes;
 
 /// Explain a pass's settings for a scene: what was chosen, its rivals, and the line of the curve that decided.
 ///
@@ -105,7 +107,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         return shadow(&scene, global, output);
     }
     if scene.environment.is_none() {
-        let left_out = lighting::no_environment(lighting::relight_bytes(&scene), None);
+        let left_out = relight::no_environment(relight::bytes(&scene), None);
         return output.result(&left_out, left_out_text);
     }
     let effort = Effort::new(true);

@@ -8,17 +8,20 @@ use clap::Args;
 use glam::{Mat4, Vec3};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::commands::render::size;
-use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
-use crate::host::lighting::Source;
-use crate::host::renderer::{Picture, Renderer, Settings};
+use crate::global::Global;
+use crate::host::lighting;
+use crate::host::machine::Machine;
+use crate::host::picture::Picture;
+use crate::host::renderer::Renderer;
+use crate::host::settings::Settings;
+use crate::host::source::Source;
 use crate::host::{device, strip};
 use crate::output::Output;
-use crate::report::model::Machine;
 use crate::report::steadiness;
+use crate::scene_options::SceneOptions;
 
 /// Draw a scene while its figures walk and its emitters go their ways: every frame as PNG, a strip of some, and how much
 /// each differs from the one before.
@@ -79,7 +82,7 @@ struct Film {
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let scene = arguments.scene.load(output)?;
     let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
-    let film = device::with(global, &source.requirements(&scene), |device| {
+    let film = device::with(global, &lighting::requirements(&source, &scene), |device| {
         let start = Settings { samples: arguments.samples, ..Settings::plain(arguments.size) };
         let mut renderer = Renderer::new(device, &scene, &source, arguments.size)?;
         let settings = Settings {

@@ -9,19 +9,21 @@ use clap::{Args, ValueEnum};
 use glam::{DQuat, Mat4};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::commands::maps_baked;
 use crate::commands::render::size;
-use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
 use crate::files;
+use crate::global::Global;
 use crate::host::device::{self, Device};
 use crate::host::filter::Filter;
-use crate::host::lighting::Source;
+use crate::host::lighting;
 use crate::host::mapped;
-use crate::host::renderer::{Air, Renderer, Settings};
+use crate::host::renderer::Renderer;
+use crate::host::settings::{Air, Settings};
+use crate::host::source::Source;
 use crate::output::Output;
 use crate::report::lines::{self, Series};
+use crate::scene_options::SceneOptions;
 
 /// Draw a scene with its normal maps filtered in each way, and compare with the truth by many samples.
 ///
@@ -91,7 +93,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         return output.result(&baked, |baked| maps_baked::text(baked));
     }
     let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
-    let (rows, exposure) = device::with(global, &source.requirements(&scene), |device| {
+    let (rows, exposure) = device::with(global, &lighting::requirements(&source, &scene), |device| {
         let mut rows = Vec::new();
         for filter in [Filter::Texels].into_iter().chain(arguments.filters.iter().copied()) {
             rows.push(draw(device, &scene, &source, filter, arguments, output)?);

@@ -6,18 +6,21 @@ use airglow_scene::Scene;
 use clap::{Args, ValueEnum};
 use glam::DQuat;
 
-use crate::cli::Global;
-use crate::commands::scene::SceneOptions;
 use crate::commands::what_if;
 use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device::{self, Device};
-use crate::host::lighting::Source;
+use crate::host::lighting;
 use crate::host::permutations;
-use crate::host::renderer::{Air, Renderer, Settings, WARM_UP};
+use crate::host::picture::WARM_UP;
+use crate::host::renderer::Renderer;
+use crate::host::settings::{Air, Settings};
+use crate::host::source::Source;
 use crate::measure::pass::{PassStat, counted};
 use crate::output::{Output, print};
 use crate::report::presets::table::{self, Row};
+use crate::scene_options::SceneOptions;
 
 /// Frames drawn for `--measure`.
 const MEASURED_FRAMES: usize = WARM_UP + 9;
@@ -80,7 +83,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let source = Source::of_scene(&scene, without, cache, output)?;
     let compared = arguments.measure && without;
     let whole = compared.then(|| Source::of_scene(&scene, false, cache, output)).transpose()?;
-    let requirements = whole.as_ref().unwrap_or(&source).requirements(&scene);
+    let requirements = lighting::requirements(whole.as_ref().unwrap_or(&source), &scene);
     let text = device::with(global, &requirements, |device| {
         let seconds = match &whole {
             Some(whole) => measure(device, &scene, whole, &settings)?,

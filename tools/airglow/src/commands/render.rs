@@ -7,16 +7,18 @@ use airglow_scene::{Scene, tone};
 use clap::Args;
 use glam::DQuat;
 
-use crate::cli::Global;
 use crate::commands::debug;
-use crate::commands::scene::SceneOptions;
 use crate::commands::without::{PassName, Without};
 use crate::failure::{Failure, Outcome};
 use crate::files;
+use crate::global::Global;
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::filter::Filter;
-use crate::host::lighting::Source;
-use crate::host::renderer::{Air, Picture, Renderer, Settings, WARM_UP};
+use crate::host::lighting;
+use crate::host::picture::{Picture, WARM_UP};
+use crate::host::renderer::Renderer;
+use crate::host::settings::{Air, Settings};
+use crate::host::source::Source;
 use crate::host::split::Split;
 #[cfg(feature = "radiance")]
 use crate::host::strip;
@@ -24,10 +26,15 @@ use crate::host::strip;
 use crate::host::{airs, complete::Road};
 use crate::host::{device, truth};
 use crate::measure::health;
+#[cfg(feature = "radiance")]
+use crate::measure::near::NearStat;
 use crate::measure::profiler::ProfilerCost;
+#[cfg(feature = "shadow")]
+use crate::measure::shadow::ShadowStat;
 use crate::measure::stat::Stat;
 use crate::measure::trace::{self, Trace};
 use crate::output::Output;
+use crate::scene_options::SceneOptions;
 
 /// Draw a scene and write the picture: scene-linear EXR, or exposed and tone-mapped PNG.
 ///
@@ -168,7 +175,7 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     if arguments.health {
         source.count_health();
     }
-    let (picture, stat) = device::with(global, &source.requirements(&scene), |device| {
+    let (picture, stat) = device::with(global, &lighting::requirements(&source, &scene), |device| {
         let mut settings = settings(arguments);
         let size = settings.picture_size();
         let (maps, count) = (arguments.maps, arguments.health);
@@ -198,11 +205,12 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
         let mut stat = Stat::new(device, &settings, &picture, cost);
         #[cfg(feature = "radiance")]
         {
-            stat.near = renderer.near_stat(&settings)?;
+            stat.near = renderer.near_samples(&settings)?.as_ref().map(NearStat::new);
         }
         #[cfg(feature = "shadow")]
         {
-            stat.shadow = renderer.shadow_stat(&settings)?;
+            stat.shadow =
+                renderer.shadow_counts(&settings)?.map(|(spheres, counts)| ShadowStat::new(spheres, counts));
         }
         for health in renderer.health() {
             stat.health.extend(health::collect(device, health)?);

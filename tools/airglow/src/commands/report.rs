@@ -1,5 +1,7 @@
 //! `airglow report`: a pass measured, as a page.
 
+mod frame;
+
 use std::path::PathBuf;
 
 #[cfg(feature = "fog")]
@@ -7,19 +9,21 @@ use airglow::fog::Fog;
 use airglow::relight::{Relight, Settings, Storage};
 use clap::{Args, ValueEnum};
 
-use crate::cli::Global;
-use crate::commands::report_frame;
-use crate::commands::scene::SceneOptions;
 use crate::failure::Outcome;
+use crate::global::Global;
 use crate::host::device;
+use crate::host::machine::Machine;
 use crate::output::Output;
 #[cfg(feature = "fog")]
 use crate::report;
 use crate::report::date::today;
-use crate::report::model::{Machine, Report};
+use crate::report::model::Report;
+use crate::report::pass::Pass;
 use crate::report::relight::curves::Measurement;
-use crate::report::relight::workload::{Effort, Workload};
+use crate::report::relight::effort::Effort;
+use crate::report::relight::workload::Workload;
 use crate::report::write;
+use crate::scene_options::SceneOptions;
 
 /// Measure a pass and write a report: error against time and memory for each of its knobs.
 ///
@@ -50,16 +54,16 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     /// Light it by this equirectangular map instead.
     #[arg(long, value_name = "FILE")]
-    pub(super) environment: Option<PathBuf>,
+    environment: Option<PathBuf>,
     /// Folder of the report.
     #[arg(long, short = 'o', value_name = "FOLDER")]
-    pub(super) output: PathBuf,
+    output: PathBuf,
     /// Fewer rays and rounds: enough to see the shape of the curves.
     #[arg(long)]
-    pub(super) quick: bool,
+    quick: bool,
     /// Of a scene's frame measure sizes too that take minutes on a software driver, and passes on all of its vertices.
     #[arg(long)]
-    pub(super) full: bool,
+    full: bool,
     /// Measure nothing; overlay these `report.json` files instead. May be given several times.
     #[arg(long, value_name = "FILE.json")]
     merge: Vec<PathBuf>,
@@ -86,57 +90,6 @@ fn subject(text: &str) -> Result<Subject, String> {
     }
 }
 
-/// Passes that can be measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Pass {
-    /// Relighting by precomputed radiance transfer.
-    Relight,
-    /// Single scattering from lights inside a medium.
-    #[cfg(feature = "fog")]
-    Fog,
-    /// Incident radiance of near emitters.
-    #[cfg(feature = "radiance")]
-    Radiance,
-    /// Normal maps filtered as distributions of normals.
-    #[cfg(feature = "normals")]
-    Normals,
-    /// Soft shadows of what moves.
-    #[cfg(feature = "shadow")]
-    Shadow,
-}
-
-impl Pass {
-    /// The scene that shows it.
-    pub fn scene(self) -> &'static str {
-        match self {
-            Self::Relight => "assets/scenes/spot.toml",
-            #[cfg(feature = "fog")]
-            Self::Fog => "assets/scenes/street.toml",
-            #[cfg(feature = "radiance")]
-            Self::Radiance => "assets/scenes/blocks.toml",
-            #[cfg(feature = "normals")]
-            Self::Normals => "assets/scenes/grooves.toml",
-            #[cfg(feature = "shadow")]
-            Self::Shadow => "assets/scenes/walkers.toml",
-        }
-    }
-
-    /// As commands and tables have it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Relight => "relight",
-            #[cfg(feature = "fog")]
-            Self::Fog => "fog",
-            #[cfg(feature = "radiance")]
-            Self::Radiance => "radiance",
-            #[cfg(feature = "normals")]
-            Self::Normals => "normals",
-            #[cfg(feature = "shadow")]
-            Self::Shadow => "shadow",
-        }
-    }
-}
-
 impl Arguments {
     /// The pass; of other subjects the one that all frames have.
     fn pass(&self) -> Pass {
@@ -160,8 +113,8 @@ impl Arguments {
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let reports = if arguments.merge.is_empty() {
         vec![match arguments.subject {
-            Subject::Presets => report_frame::presets(arguments, global, output)?,
-            Subject::Frame(ref scene) => report_frame::frame(scene, arguments, global, output)?,
+            Subject::Presets => frame::presets(arguments, global, output)?,
+            Subject::Frame(ref scene) => frame::frame(scene, arguments, global, output)?,
             Subject::Pass(Pass::Relight) => relight(arguments, global, output)?,
             #[cfg(feature = "fog")]
             Subject::Pass(Pass::Fog) => fog(arguments, global, output)?,

@@ -18,14 +18,14 @@ use airglow::relight::{Bench, Relight, Settings};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
 use crate::files;
+use crate::global::Global;
 use crate::host::device;
+use crate::host::machine::Machine;
 use crate::output::Output;
-use crate::report::html::escape;
-use crate::report::model::Machine;
 use crate::report::sweep::{self, SweepPlot};
+use crate::text::escape;
 use again::Again;
 
 /// Try a pass on extreme inputs and sweep its limits, and print each result beside the truth, with pass or fail.

@@ -6,16 +6,17 @@ use clap::Args;
 use glam::DQuat;
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::commands::render::size;
-use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
-use crate::host::lighting::Source;
-use crate::host::renderer::{Air, Settings};
+use crate::host::lighting;
+use crate::host::machine::Machine;
+use crate::host::settings::{Air, Settings};
+use crate::host::source::Source;
 use crate::measure::pass::{PassStat, timed};
 use crate::output::Output;
-use crate::report::model::Machine;
+use crate::scene_options::SceneOptions;
 use crate::window::controls;
 use crate::window::reload::Watch;
 use crate::window::stage::Stage;
@@ -87,27 +88,28 @@ pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let extensions = instance_extensions(&event_loop)?;
     let scene = arguments.scene.load(output)?;
     let source = Source::of_scene(&scene, false, &arguments.scene.cache, output)?;
-    let stat = device::with_window(global, &source.requirements(&scene), &extensions, |device| {
-        let mut start = settings(arguments);
-        let (camera, stated) = (scene.camera(), scene.exposure);
-        let cache = arguments.scene.cache.clone();
-        let mut stage = Stage::new(device, scene, source, start.picture_size(), cache, output.clone())?;
-        start.exposure = stage.renderer.exposure(arguments.exposure, stated, &start)?;
-        let show = Show {
-            title: format!("{}, airglow", arguments.scene.scene.display()),
-            camera,
-            start,
-            spin: arguments.spin,
-            frames: arguments.frames,
-            picture: arguments.picture.clone().unwrap_or_else(|| PathBuf::from("view.png")),
-            last_picture: arguments.picture.is_some() && arguments.frames.is_some(),
-            bare: arguments.bare,
-            watch: arguments.shaders.clone().map(|folder| Watch::new(folder, arguments.compile.clone())),
-        };
-        let mut viewer = Viewer::new(device, stage, show)?;
-        event_loop.run_app(&mut viewer).map_err(Failure::work)?;
-        Ok(stat(device.machine(), viewer.finish()?))
-    })?;
+    let stat =
+        device::with_window(global, &lighting::requirements(&source, &scene), &extensions, |device| {
+            let mut start = settings(arguments);
+            let (camera, stated) = (scene.camera(), scene.exposure);
+            let cache = arguments.scene.cache.clone();
+            let mut stage = Stage::new(device, scene, source, start.picture_size(), cache, output.clone())?;
+            start.exposure = stage.renderer.exposure(arguments.exposure, stated, &start)?;
+            let show = Show {
+                title: format!("{}, airglow", arguments.scene.scene.display()),
+                camera,
+                start,
+                spin: arguments.spin,
+                frames: arguments.frames,
+                picture: arguments.picture.clone().unwrap_or_else(|| PathBuf::from("view.png")),
+                last_picture: arguments.picture.is_some() && arguments.frames.is_some(),
+                bare: arguments.bare,
+                watch: arguments.shaders.clone().map(|folder| Watch::new(folder, arguments.compile.clone())),
+            };
+            let mut viewer = Viewer::new(device, stage, show)?;
+            event_loop.run_app(&mut viewer).map_err(Failure::work)?;
+            Ok(stat(device.machine(), viewer.finish()?))
+        })?;
     output.result(&stat, text)
 }
 

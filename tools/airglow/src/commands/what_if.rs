@@ -6,15 +6,17 @@ use airglow_graph::PlanDifference;
 use airglow_scene::{Environment, Scene, Shadow, Storage};
 use serde::Serialize;
 
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device::{self, Device};
 #[cfg(feature = "radiance")]
 use crate::host::emitters;
-use crate::host::lighting::Source;
-use crate::host::renderer::{Air, Renderer, Settings};
+use crate::host::lighting;
+use crate::host::renderer::Renderer;
+use crate::host::settings::{Air, Settings};
 #[cfg(feature = "shadow")]
 use crate::host::shadow;
+use crate::host::source::Source;
 use crate::output::Output;
 
 /// Every key and what it takes.
@@ -55,7 +57,8 @@ pub fn run(
     }
     let source = Source::unbaked(scene, settings.without_relight)?;
     let other_source = Source::unbaked(&other_scene, other_settings.without_relight)?;
-    let requirements = source.requirements(scene).and(&other_source.requirements(&other_scene));
+    let requirements =
+        lighting::requirements(&source, scene).and(&lighting::requirements(&other_source, &other_scene));
     let difference = device::with(global, &requirements, |device| {
         let plan = plan(device, scene, &source, settings)?;
         Ok(plan.difference(&self::plan(device, &other_scene, &other_source, &other_settings)?))

@@ -2,7 +2,9 @@
 
 use airglow_scene::FloatImage;
 
-use super::renderer::{Air, Picture, Renderer, Settings};
+use super::picture::Picture;
+use super::renderer::Renderer;
+use super::settings::{Air, Settings};
 use super::strip::joined;
 use crate::failure::Outcome;
 

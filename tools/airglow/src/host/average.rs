@@ -3,7 +3,9 @@
 use airglow_math::sequence;
 use airglow_scene::FloatImage;
 
-use super::renderer::{Compiled, Renderer, Settings};
+use super::picture::Compiled;
+use super::renderer::Renderer;
+use super::settings::Settings;
 use super::view;
 use crate::failure::{Failure, Outcome};
 

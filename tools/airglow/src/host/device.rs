@@ -4,18 +4,16 @@
 use std::ffi::CStr;
 
 use airglow_gpu::ash::vk;
-use airglow_gpu::open::{
-    DeviceKind, DeviceLine, FrameLoop, FrameSemaphores, OpenDevice, OpenOptions, Selector,
-};
+use airglow_gpu::open::{FrameLoop, FrameSemaphores, OpenDevice, OpenOptions, Selector};
 #[cfg(feature = "view")]
 use airglow_gpu::surface::{DEVICE_EXTENSIONS, Surface};
 use airglow_gpu::{Context, Execution, GpuError, Imports, Recorded, Recorder, Requirements, Timing};
 #[cfg(feature = "view")]
 use winit::raw_window_handle::{RawDisplayHandle, RawWindowHandle};
 
-use crate::cli::Global;
+use super::machine::Machine;
 use crate::failure::{Failure, Outcome};
-use crate::report::model::Machine;
+use crate::global::Global;
 
 /// How many frames may be on the device at once.
 const FRAMES_IN_FLIGHT: u32 = 2;
@@ -190,45 +188,6 @@ impl Device<'_> {
 
     /// The device as reports name it.
     pub fn machine(&self) -> Machine {
-        machine(self.open.line())
+        Machine::new(self.open.line())
     }
-}
-
-/// A device line as reports hold it.
-fn machine(line: &DeviceLine) -> Machine {
-    Machine {
-        device: line.name.clone(),
-        kind: kind_name(line.kind).to_owned(),
-        driver: line.driver.clone(),
-        clocks: clocks(line.kind),
-        software: line.kind == DeviceKind::Cpu,
-    }
-}
-
-/// The kind in the words that `--device` takes.
-pub fn kind_name(kind: DeviceKind) -> &'static str {
-    match kind {
-        DeviceKind::Discrete => "discrete",
-        DeviceKind::Integrated => "integrated",
-        DeviceKind::Virtual => "virtual",
-        DeviceKind::Cpu => "cpu",
-        DeviceKind::Other => "other",
-    }
-}
-
-/// Clocks of a software device, from the kernel's list of processors; other drivers do not tell.
-fn clocks(kind: DeviceKind) -> Option<String> {
-    if kind == DeviceKind::Cpu { processor() } else { None }
-}
-
-/// Count, model and clock of the machine's processors, where the kernel lists them.
-pub fn processor() -> Option<String> {
-    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
-    let field = |name: &str| {
-        let line = text.lines().find(|line| line.starts_with(name))?;
-        line.split_once(':').map(|(_, value)| value.trim().to_owned())
-    };
-    let count = text.lines().filter(|line| line.starts_with("processor")).count();
-    let mhz: f64 = field("cpu MHz")?.parse().ok()?;
-    Some(format!("{count} x {}, {mhz:.0} MHz", field("model name")?))
 }

@@ -14,6 +14,7 @@ use bytemuck::{Pod, Zeroable};
 #[cfg(feature = "fog")]
 use super::complete::Complete;
 use super::filter::{MAPPED_BINDINGS, MappedFragments};
+use super::formats::DEPTH;
 use super::lights::LightsConstants;
 use super::scene::{DeviceScene, Draw, Look, MapBindings};
 use super::shaders;
@@ -21,9 +22,6 @@ use super::skin::Posed;
 use super::sky::{Behind, SkyPipelines};
 use super::surface::{DRAW_BINDINGS, Inputs, scene_pipeline};
 use super::view::SharedView;
-
-/// The format of depth.
-pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// The pipelines of the host's draws, for one format of the HDR target.
 pub struct Pipelines {

@@ -10,14 +10,17 @@ use airglow_graph::{Access, Buffer, Graph, Handle, Image};
 use super::counted;
 use super::draw::{self, Developed, Development, Drawn, Lights, Region, VertexArray, VertexLight};
 #[cfg(feature = "fog")]
-use super::fog;
-use super::lighting::{Lighting, Reason, left_out, no_environment};
+use super::fog_frame;
+use super::lighting::Lighting;
 #[cfg(feature = "radiance")]
 use super::near::Arrival;
-use super::renderer::{Renderer, Settings};
+use super::relight::{left_out, no_environment};
+use super::renderer::Renderer;
+use super::settings::Settings;
 #[cfg(feature = "shadow")]
 use super::skin::Posed;
 use super::sky::{Behind, Glow};
+use super::source::Reason;
 use super::view::SharedView;
 use crate::failure::{Failure, Outcome};
 
@@ -197,7 +200,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     #[cfg_attr(not(feature = "fog"), expect(unused_variables, reason = "only fog differs from view to view"))]
     for (index, view) in views.iter().enumerate() {
         #[cfg(feature = "fog")]
-        let lights = fog::complete(renderer, settings, index, lights.clone(), &mut fog)?;
+        let lights = fog_frame::complete(renderer, settings, index, lights.clone(), &mut fog)?;
         let (colours, lights) = (colours.as_ref(), lights.as_ref());
         drawn.push(pipelines.scene(
             &mut graph,
@@ -213,7 +216,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
 
     // The medium before it dims them and glows.
     #[cfg(feature = "fog")]
-    fog.extend(fog::add(renderer, settings, &mut graph, &mut imports, &mut drawn)?);
+    fog.extend(fog_frame::add(renderer, settings, &mut graph, &mut imports, &mut drawn)?);
 
     // Exposure, tone map and encoding make the picture, the views side by side.
     let mut picture = |name, buffer: &airglow_gpu::Buffer| {

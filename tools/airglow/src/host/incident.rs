@@ -10,11 +10,8 @@ use glam::DQuat;
 
 use super::draw::VertexArray;
 use super::transfer::SceneTransfer;
-use super::{lighting, mapped};
+use super::{needed, relight};
 use crate::failure::{Failure, Outcome};
-
-/// Bands that the draw reads of each vertex.
-const BANDS: u32 = 3;
 
 /// The pass with the vertices of all instances that have a normal map.
 pub struct Incident {
@@ -23,11 +20,6 @@ pub struct Incident {
     instances: Vec<(usize, MeshId)>,
     /// Instances of the scene.
     count: usize,
-}
-
-/// Whether light from all around can be told to the normals of a scene's surfaces.
-pub fn is_drawn(scene: &Scene) -> bool {
-    lighting::is_lit(scene) && scene.quality.order >= BANDS
 }
 
 /// Bytes of a vertex's coefficients.
@@ -39,14 +31,14 @@ impl Incident {
     /// The pass for the instances of a scene that have maps to be drawn, where there are some.
     pub fn new(context: &Context, scene: &Scene, transfer: &SceneTransfer) -> Outcome<Option<Self>> {
         let instances: Vec<usize> =
-            (0..scene.instances.len()).filter(|number| mapped::gathers(scene, *number)).collect();
+            (0..scene.instances.len()).filter(|number| needed::incident_on(scene, *number)).collect();
         if instances.is_empty() {
             return Ok(None);
         }
         let settings = airglow::relight::Settings {
             output: Output::Incident,
             normals: false,
-            ..lighting::relight_settings(scene)
+            ..relight::settings(scene)
         };
         let mut relight = Relight::new(context, settings).map_err(Failure::work)?;
         let mut meshes: Vec<Option<MeshId>> = vec![None; transfer.transfers.len()];

@@ -4,7 +4,8 @@ use airglow_scene::{Light, LightKind, Medium, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use super::unread::MAX_LIGHTS;
+/// Lights that a draw takes; further ones are left out.
+pub const MAX_LIGHTS: usize = 64;
 
 /// `Light` of `host/lights.glsl`.
 #[repr(C)]

@@ -14,9 +14,9 @@ use airglow_scene::{Image, Material, MaterialClass, Scene};
 use super::counted::Counted;
 use super::device::Device;
 use super::filter::{Filter, MappedFragments, Under};
-use super::lighting::Source;
 use super::scene::{DeviceScene, Look, Mapped};
-use super::{incident, scene, shaders, upload};
+use super::source::Source;
+use super::{incident, needed, scene, shaders, upload};
 use crate::failure::{Failure, Outcome};
 
 /// Relative error that the lobes of a material may have.
@@ -36,37 +36,20 @@ pub struct MappedMaterials {
     materials: Vec<Option<Mapped>>,
 }
 
-/// Whether the normal map of a material is drawn: the scene's own lights shine on it, or light from all around.
-pub fn is_drawn(scene: &Scene, material: &Material) -> bool {
-    let lit = !scene.lights.is_empty() || incident::is_drawn(scene);
-    lit && material.class != MaterialClass::Unlit && material.normal_texture.is_some()
-}
-
-/// The same of an instance: a mesh without texture coordinates has no tangents, and nothing to look its map up by.
-pub fn is_drawn_on(scene: &Scene, instance: usize) -> bool {
-    let instance = &scene.instances[instance];
-    is_drawn(scene, &scene.materials[instance.material]) && !scene.meshes[instance.mesh].tangents.is_empty()
-}
-
-/// Whether it reflects light from all around.
-pub fn gathers(scene: &Scene, instance: usize) -> bool {
-    incident::is_drawn(scene) && is_drawn_on(scene, instance)
-}
-
 /// Bytes of the maps that are drawn, and of what vertices are told of the light from all around for them.
 pub fn bytes(scene: &Scene) -> u64 {
-    let drawn = scene.materials.iter().filter(|material| is_drawn(scene, material));
+    let drawn = scene.materials.iter().filter(|material| needed::normal_map(scene, material));
     let images = drawn.filter_map(|material| scene.images.get(material.normal_texture?.image));
     let maps: u64 = images.map(|image| 4 * u64::from(image.width) * u64::from(image.height)).sum();
     let vertices = (0..scene.instances.len())
-        .filter(|number| gathers(scene, *number))
+        .filter(|number| needed::incident_on(scene, *number))
         .map(|number| scene.meshes[scene.instances[number].mesh].positions.len() as u64);
     maps + u64::from(incident::vertex_bytes(scene)) * vertices.sum::<u64>()
 }
 
 /// What the device must offer for a scene.
 pub fn requirements(scene: &Scene) -> Requirements {
-    match scene.materials.iter().any(|material| is_drawn(scene, material)) {
+    match scene.materials.iter().any(|material| needed::normal_map(scene, material)) {
         true => Normals::requirements(&Settings::default()),
         false => Requirements::engine(),
     }
@@ -86,7 +69,7 @@ impl MappedMaterials {
             Self { filter, preset, left_out: Vec::new(), counted: None, count, materials: Vec::new() };
         let lit = !scene.lights.is_empty() || matches!(source, Source::Relight(_));
         for material in &scene.materials {
-            let mapped = match lit && is_drawn(scene, material) {
+            let mapped = match lit && needed::normal_map(scene, material) {
                 true => maps.read(device, scene, material)?,
                 false => None,
             };
@@ -98,7 +81,7 @@ impl MappedMaterials {
     /// Gives each draw the map of its material.
     pub fn attach(&self, scene: &Scene, source: &Source, device_scene: &mut DeviceScene) {
         for (number, (draw, instance)) in device_scene.draws.iter_mut().zip(&scene.instances).enumerate() {
-            let drawn = is_drawn_on(scene, number);
+            let drawn = needed::normal_map_on(scene, number);
             draw.mapped = self.materials[instance.material].clone().filter(|_| drawn);
             if let Source::Relight(transfer) = source
                 && transfer.instances[number].in_world
@@ -113,7 +96,7 @@ impl MappedMaterials {
         let looks: BTreeSet<Look> = self.materials.iter().flatten().map(|mapped| mapped.look).collect();
         let of = |look, fogged| {
             let fragment = |incident| shaders::mapped_fragment(self.filter, look, Under { fogged, incident });
-            let incident = incident::is_drawn(scene).then(|| (incident::vertex_bytes(scene), fragment(true)));
+            let incident = needed::incident(scene).then(|| (incident::vertex_bytes(scene), fragment(true)));
             MappedFragments { look, fogged, plain: fragment(false), incident }
         };
         let airs = if in_fog { &[false, true][..] } else { &[false] };

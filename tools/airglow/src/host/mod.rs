@@ -1,15 +1,18 @@
 //! The first host: it opens its own device, then uses only what any engine would.
 //!
-//! `device` opens and adopts; `transfer` bakes on the CPU; `lighting` holds the pass, or why it is not there; `scene`
-//! and `upload` bring arrays to the device; `frame` declares a whole frame in one function; `draw` holds the host's own
-//! draws, `surface` their pipelines, `lights`, `fog`, `incident`, `mapped` and `near` what they take of the scene's lights, medium, normal maps and near `emitters`;
-//! `renderer` owns it all.
-//! `truth` computes on the CPU, by rays, what the pass approximates.
+//! From below: `device` opens and adopts a device; `needed` says which passes a scene has work for. `bake` computes on the
+//! CPU what is computed once (`transfer`, `spheres`, `near_tree`), and `source` says what lights the vertices. `scene` and
+//! `upload` bring arrays to the device, `shaders`, `surface`, `sky` and `draw` hold the host's own draws. Each pass has a
+//! file or two: `relight`, `incident`, `near`, `shadow`, `fog`, `mapped`; `lighting` holds those that light vertices.
+//! `renderer` owns it all, `frame` declares a whole frame in one function, and `picture` compiles and draws it; `moving`,
+//! `remake` and `told` change it between frames and say what passes counted. `truth` computes on the CPU, by rays, what the
+//! passes approximate.
 
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod airs;
 #[cfg(feature = "relight")]
 pub mod average;
+pub mod bake;
 pub mod ball;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod complete;
@@ -30,7 +33,11 @@ pub mod filter;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
 #[cfg(all(feature = "fog", feature = "relight"))]
+pub mod fog_frame;
+#[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog_sky;
+#[cfg(feature = "relight")]
+pub mod formats;
 #[cfg(feature = "relight")]
 pub mod frame;
 pub mod holes;
@@ -40,8 +47,8 @@ pub mod incident;
 pub mod kept;
 #[cfg(feature = "relight")]
 pub mod lighting;
-#[cfg(feature = "relight")]
 pub mod lights;
+pub mod machine;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod mapped;
 #[cfg(feature = "relight")]
@@ -51,9 +58,17 @@ pub mod near;
 #[cfg(all(feature = "radiance", feature = "relight"))]
 pub mod near_tree;
 #[cfg(feature = "relight")]
+pub mod needed;
+#[cfg(feature = "relight")]
 pub mod over;
 #[cfg(feature = "relight")]
 pub mod permutations;
+#[cfg(feature = "relight")]
+pub mod picture;
+#[cfg(all(feature = "radiance", feature = "relight"))]
+pub mod placed;
+#[cfg(feature = "relight")]
+pub mod relight;
 #[cfg(all(feature = "view", feature = "relight"))]
 pub mod remake;
 #[cfg(feature = "relight")]
@@ -69,6 +84,8 @@ pub mod shadow;
 pub mod skin;
 #[cfg(feature = "relight")]
 pub mod sky;
+#[cfg(feature = "relight")]
+pub mod source;
 #[cfg(all(feature = "shadow", feature = "relight"))]
 pub mod sphere_mesh;
 #[cfg(all(feature = "shadow", feature = "relight"))]
@@ -80,8 +97,12 @@ pub mod strip;
 #[cfg(feature = "relight")]
 pub mod surface;
 pub mod texture;
+#[cfg(feature = "relight")]
+pub mod told;
 pub mod transfer;
 pub mod truth;
 pub mod unread;
 pub mod upload;
 pub mod view;
+#[cfg(feature = "relight")]
+pub mod work;

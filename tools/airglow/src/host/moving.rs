@@ -1,15 +1,17 @@
-//! What of a scene moves by itself, from frame to frame of one plan.
+//! What of a scene moves by itself, from frame to frame of one plan, or is moved between plans.
 
-#[cfg(feature = "shadow")]
+#[cfg(feature = "radiance")]
+use std::sync::Arc;
+
+#[cfg(feature = "radiance")]
+use glam::Mat4;
+
+#[cfg(feature = "radiance")]
+use super::emitters;
+#[cfg(any(feature = "radiance", feature = "shadow"))]
 use super::lighting::Lighting;
 use super::renderer::Renderer;
-#[cfg(feature = "shadow")]
-use super::renderer::{Compiled, Settings};
-#[cfg(feature = "shadow")]
-use super::shadow::SceneShadow;
 use crate::failure::Outcome;
-#[cfg(feature = "shadow")]
-use crate::measure::shadow::ShadowStat;
 
 impl Renderer<'_> {
     /// Puts the figures where they are at a time, seconds, from the next recording on; plans stay.
@@ -26,20 +28,24 @@ impl Renderer<'_> {
         Ok(())
     }
 
-    /// What the shadow pass counts in a frame, where there is the pass.
-    #[cfg(feature = "shadow")]
-    pub fn shadow_stat(&mut self, settings: &Settings) -> Outcome<Option<ShadowStat>> {
-        let spheres = match &self.lighting {
-            Lighting::Relight(lit) if !settings.without_relight && !settings.without_shadow => {
-                lit.shadow.as_ref().map(SceneShadow::sphere_count)
-            }
-            _ => None,
-        };
-        let Some(spheres) = spheres else { return Ok(None) };
-        let settings = Settings { count_shadow: true, ..*settings };
-        let Compiled { mut execution, imports, turning, .. } = self.compile(&settings, 1, false)?;
-        self.move_to(settings.time)?;
-        self.device.frames(&mut execution, &imports, None, 1, |_| Ok(()))?;
-        Ok(Some(ShadowStat::new(spheres, super::shadow::counts(&turning.shadow_counts)?)))
+    /// Moves the emitters to `part` of their ways, in what is drawn and in what lights it, for frames declared from now on.
+    #[cfg(feature = "radiance")]
+    pub fn move_emitters(&mut self, part: f32) {
+        let Lighting::Relight(lit) = &mut self.lighting else { return };
+        let Some(near) = &mut lit.near else { return };
+        near.move_emitters(part);
+        let draws = &mut Arc::make_mut(&mut self.scene).draws;
+        let first = draws.len().saturating_sub(near.emitters().len());
+        for (draw, emitter) in draws[first..].iter_mut().zip(near.emitters()) {
+            draw.material.place(Mat4::from_translation(emitters::offset(emitter, part)));
+        }
+    }
+
+    /// Has the next frame take all samples of near emitters anew, as if they had moved.
+    #[cfg(feature = "radiance")]
+    pub fn forget_samples(&self) {
+        if let Lighting::Relight(lit) = &self.lighting {
+            lit.near.iter().for_each(|near| near.receiver().forget_samples());
+        }
     }
 }

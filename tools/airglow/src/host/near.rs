@@ -1,33 +1,24 @@
 //! Light of the scene's near emitters at each vertex, by the radiance pass.
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
 use airglow::math::sh::rotation::Rotation;
 use airglow::math::sphere::equirect::Projector;
 use airglow::radiance::gpu::bench::Bench;
-use airglow::radiance::gpu::{Atlas, RefineState};
-use airglow::radiance::{
-    Control, Hierarchy, Lights, Lit, Part, PassSettings, Radiance, Receiver, Settings, Sphere, Triangle,
-};
+use airglow::radiance::gpu::{Atlas, LightShape, RefineState};
+use airglow::radiance::{Control, Lights, Lit, PassSettings, Radiance, Receiver, Settings, Sphere, Triangle};
 use airglow_gpu::{Context, Imports, Record, Requirements};
 use airglow_graph::{Graph, LeftOut};
 use airglow_scene::{Emitter, Environment, Scene};
-use glam::{DMat3, DQuat, Mat4};
+use glam::DQuat;
 
 use super::device::Device;
 use super::emitters;
-use super::lighting::Lighting;
-use super::renderer::{Renderer, Settings as FrameSettings};
+use super::needed::{self, NEAR_ORDERS};
+use super::placed::Placed;
 use super::transfer::SceneTransfer;
 use crate::failure::{Failure, Outcome};
-use crate::measure::near::NearStat;
 
 /// Error of a vertex colour that samples aim at where no preset is asked for, W/sr/m2 before exposure.
 pub const BOUND: f64 = 2e-3;
-
-/// Bands that samples can have.
-const ORDERS: std::ops::RangeInclusive<u32> = 3..=6;
 
 /// The pass with a scene's vertices and emitters.
 pub struct NearLight {
@@ -41,6 +32,18 @@ pub struct NearLight {
     settings: PassSettings,
 }
 
+/// What the samples of a frame left on the device.
+pub struct Sampled {
+    /// How far they were refined.
+    pub state: Option<RefineState>,
+    /// Light and closed forms of each, as its shape says.
+    pub lights: Vec<[f32; 4]>,
+    /// How these lie.
+    pub shape: LightShape,
+    /// The error that was aimed at, W/sr/m2.
+    pub bound: f64,
+}
+
 /// How the environment reaches the vertices of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Arrival<'a> {
@@ -50,29 +53,9 @@ pub struct Arrival<'a> {
     pub filter: Option<&'a [[f64; 3]]>,
 }
 
-/// What is lit, placed in the world.
-pub struct Placed {
-    /// Metres.
-    pub positions: Vec<[f32; 3]>,
-    /// Transfer vectors of as many bands as the scene's quality says, each about the axes of its part.
-    pub vectors: Vec<f32>,
-    /// The instances.
-    pub parts: Vec<Part>,
-}
-
-/// Whether the pass lights a scene.
-pub fn is_drawn(scene: &Scene) -> bool {
-    glows(scene) && ORDERS.contains(&scene.quality.order)
-}
-
-fn glows(scene: &Scene) -> bool {
-    let glows = |emitter: &Emitter| emitter.radiance.iter().any(|x| *x > 0.0);
-    scene.emitters.iter().any(glows)
-}
-
 /// The record of the pass being left out of a scene; what it does not know, black receivers, it says itself.
 pub fn left_out(scene: &Scene, without_relight: bool) -> Option<LeftOut> {
-    let (why, would_return) = match (glows(scene), ORDERS.contains(&scene.quality.order)) {
+    let (why, would_return) = match (needed::glows(scene), NEAR_ORDERS.contains(&scene.quality.order)) {
         (false, _) => ("the scene has no emitter that gives light", "an [[emitter]] in the scene file"),
         (true, false) => ("it has no kernels of so many bands", "3 to 6 bands"),
         (true, true) if without_relight => ("relight, which takes its light, is left out", "relight"),
@@ -96,7 +79,7 @@ pub fn bytes(scene: &Scene) -> u64 {
 
 /// What the device must offer for a scene.
 pub fn requirements(scene: &Scene) -> Requirements {
-    match is_drawn(scene) {
+    match needed::near_light(scene) {
         true => Radiance::requirements(&settings(scene)),
         false => Requirements::engine(),
     }
@@ -104,7 +87,7 @@ pub fn requirements(scene: &Scene) -> Requirements {
 
 /// What the device must offer to measure the pass at any of its orders.
 pub fn measured_requirements() -> Requirements {
-    let settings = PassSettings { order: *ORDERS.end() as usize, ..PassSettings::default() };
+    let settings = PassSettings { order: *NEAR_ORDERS.end() as usize, ..PassSettings::default() };
     Radiance::requirements(&settings).and(&Atlas::requirements())
 }
 
@@ -118,43 +101,10 @@ pub fn settings(scene: &Scene) -> PassSettings {
     PassSettings { order: scene.quality.order as usize, ..asked }
 }
 
-impl Placed {
-    /// All instances of a scene with their transfer; emitters reflect nothing.
-    pub fn new(scene: &Scene, transfer: &SceneTransfer) -> Self {
-        let (mut positions, mut vectors, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let surfaces = emitters::surfaces(scene);
-        for (index, (instance, lit)) in scene.instances.iter().zip(&transfer.instances).enumerate() {
-            let first = positions.len() as u32;
-            let place = |p: &[f32; 3]| instance.transform.transform_point3((*p).into()).to_array();
-            let mesh = &scene.meshes[instance.mesh].positions;
-            let baked = &transfer.transfers[lit.transfer].coefficients;
-            if index < surfaces {
-                positions.extend(mesh.iter().map(place));
-                vectors.extend_from_slice(baked);
-            } else {
-                // It reflects nothing, and must not widen the tree of what does.
-                let anywhere = positions.first().copied().unwrap_or_default();
-                positions.resize(positions.len() + mesh.len(), anywhere);
-                vectors.resize(vectors.len() + baked.len(), 0.0);
-            }
-            let side = if lit.inverted { -1.0 } else { 1.0 };
-            let turn = side * DMat3::from_quat(lit.rotation.conjugate());
-            parts.push(Part { vertices: first..positions.len() as u32, turn: Some(turn) });
-        }
-        Self { positions, vectors, parts }
-    }
-
-    /// The tree over the vertices.
-    pub fn tree(&self) -> Outcome<Hierarchy> {
-        Hierarchy::build(&self.positions, &self.vectors, &mut |_, _| ControlFlow::Continue(()))
-            .map_err(Failure::work)
-    }
-}
-
 impl NearLight {
     /// The pass for a scene, where it has something to do.
     pub fn new(context: &Context, scene: &Scene, transfer: &SceneTransfer) -> Outcome<Option<Self>> {
-        if !is_drawn(scene) {
+        if !needed::near_light(scene) {
             return Ok(None);
         }
         Self::with_settings(context, scene, transfer, settings(scene)).map(Some)
@@ -240,14 +190,23 @@ impl NearLight {
         Lights { emitters: &self.triangles, spheres: &self.spheres, distant, ..Lights::NONE }
     }
 
-    /// What the samples of the last frame took, once it is done.
-    pub fn stat(&self, device: &Device<'_>) -> Outcome<NearStat> {
+    /// What the samples of the last frame left on the device, once it is done.
+    pub fn sampled(&self, device: &Device<'_>) -> Outcome<Sampled> {
         let run = device.bench();
         let bench = Bench { context: device.context(), run: &run };
         let samples = self.receiver.samples();
         let states: Vec<RefineState> = bench.read(&samples.state).map_err(Failure::work)?;
-        let lights: Vec<[f32; 4]> = bench.read(&samples.lights).map_err(Failure::work)?;
-        Ok(NearStat::new(states.first(), &lights, self.receiver.shape(), self.settings.refinement.bound))
+        Ok(Sampled {
+            state: states.first().copied(),
+            lights: bench.read(&samples.lights).map_err(Failure::work)?,
+            shape: self.receiver.shape(),
+            bound: self.settings.refinement.bound,
+        })
+    }
+
+    /// The emitters where they start.
+    pub fn emitters(&self) -> &[Emitter] {
+        &self.emitters
     }
 
     fn arriving(&self, Arrival { turn, filter }: Arrival<'_>) -> Outcome<Vec<[f32; 3]>> {
@@ -257,37 +216,6 @@ impl NearLight {
         let rotation = Rotation::from_quaternion(self.settings.order, turn).map_err(Failure::work)?;
         let turned = rotation.apply_rgb(&self.distant).map_err(Failure::work)?;
         Ok(filtered(&turned, filter))
-    }
-}
-
-impl Renderer<'_> {
-    /// Has the next frame take all samples of near emitters anew, as if they had moved.
-    pub fn forget_samples(&self) {
-        if let Lighting::Relight(lit) = &self.lighting {
-            lit.near.iter().for_each(|near| near.receiver.forget_samples());
-        }
-    }
-
-    /// What the radiance pass sampled in the last frame drawn, where there is the pass.
-    pub fn near_stat(&self, settings: &FrameSettings) -> Outcome<Option<NearStat>> {
-        match &self.lighting {
-            Lighting::Relight(lit) if !settings.without_relight => {
-                lit.near.as_ref().map(|near| near.stat(self.device)).transpose()
-            }
-            _ => Ok(None),
-        }
-    }
-
-    /// Moves the emitters to `part` of their ways, in what is drawn and in what lights it, for frames declared from now on.
-    pub fn move_emitters(&mut self, part: f32) {
-        let Lighting::Relight(lit) = &mut self.lighting else { return };
-        let Some(near) = &mut lit.near else { return };
-        near.move_emitters(part);
-        let draws = &mut Arc::make_mut(&mut self.scene).draws;
-        let first = draws.len().saturating_sub(near.emitters.len());
-        for (draw, emitter) in draws[first..].iter_mut().zip(&near.emitters) {
-            draw.material.place(Mat4::from_translation(emitters::offset(emitter, part)));
-        }
     }
 }
 

@@ -9,7 +9,8 @@ use airglow_bake::cache::container::{Container, Element, Field, key};
 use airglow_scene::Scene;
 use serde_json::{Map, Value};
 
-use super::near::{self, Placed};
+use super::needed;
+use super::placed::Placed;
 use super::transfer::SceneTransfer;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
@@ -27,7 +28,7 @@ pub fn of_scene(
     cache: &Path,
     output: &Output,
 ) -> Outcome<Option<Hierarchy>> {
-    if !near::is_drawn(scene) {
+    if !needed::near_light(scene) {
         return Ok(None);
     }
     let placed = Placed::new(scene, transfer);

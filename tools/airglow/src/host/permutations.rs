@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use airglow_gpu::ash::vk;
 use airglow_scene::Scene;
 
-use super::lighting::relight_settings;
+use super::relight;
 
 /// The settings of every pass that has a step among `steps`, by the name of its room; and what the host's own draw is made for.
 pub fn of_frame(scene: &Scene, steps: &[&str]) -> BTreeMap<&'static str, String> {
-    let mut all = BTreeMap::from([("relight", format!("{:?}", relight_settings(scene)))]);
+    let mut all = BTreeMap::from([("relight", format!("{:?}", relight::settings(scene)))]);
     #[cfg(feature = "fog")]
     all.insert("fog", format!("{:?}", super::fog::settings(scene, vk::Format::R32G32B32A32_SFLOAT)));
     #[cfg(feature = "radiance")]
@@ -25,7 +25,7 @@ pub fn of_frame(scene: &Scene, steps: &[&str]) -> BTreeMap<&'static str, String>
 /// Whether surfaces have light of their vertices, lights, a medium's light, and how many materials have a normal map.
 fn draw(scene: &Scene, relit: bool) -> String {
     #[cfg(feature = "normals")]
-    let maps = scene.materials.iter().filter(|material| super::mapped::is_drawn(scene, material)).count();
+    let maps = scene.materials.iter().filter(|material| super::needed::normal_map(scene, material)).count();
     #[cfg(not(feature = "normals"))]
     let maps = 0;
     let (lights, medium) = (!scene.lights.is_empty(), scene.medium.is_some());

@@ -8,11 +8,12 @@ use airglow_scene::Scene;
 use glam::Mat4;
 use glam::Vec3;
 
-use super::lighting::Lighting;
 #[cfg(any(feature = "radiance", feature = "shadow"))]
-use super::lighting::Source;
+use super::lighting::Lighting;
 use super::lights::LightsConstants;
 use super::renderer::Renderer;
+#[cfg(any(feature = "radiance", feature = "shadow"))]
+use super::source::Source;
 use crate::failure::Outcome;
 
 impl Renderer<'_> {

@@ -1,14 +1,11 @@
-//! The host: its scene, its passes, its target, and pictures out of them.
+//! The host: its scene on the device, its passes, its target.
 
 use std::sync::Arc;
 
-use airglow_gpu::Record;
 use airglow_gpu::ash::vk;
-use airglow_gpu::{
-    Buffer, Calibration, Execution, FrameTimes, Imports, Label, Location, Timing, TimingSummary,
-};
-use airglow_graph::{BufferDesc, LeftOut, Plan};
-use airglow_scene::{Camera, Exposure, FloatImage, Scene};
+use airglow_gpu::{Buffer, Label, Location};
+use airglow_graph::{BufferDesc, LeftOut};
+use airglow_scene::{Camera, Scene};
 use glam::DQuat;
 
 use super::counted::Counters;
@@ -18,24 +15,19 @@ use super::environment_samples::EnvironmentSamples;
 use super::filter::Filter;
 #[cfg(feature = "fog")]
 use super::fog::SceneFog;
-use super::frame::{self, Declared, Turning};
-use super::lighting::{self, Lighting, Source};
+use super::formats::HDR;
+use super::lighting::Lighting;
 use super::lights::LightsConstants;
 #[cfg(feature = "normals")]
 use super::mapped::MappedMaterials;
-#[cfg(feature = "radiance")]
-use super::near::Arrival;
 use super::over::Over;
 use super::scene::{self, DeviceScene};
-pub use super::settings::{Air, Settings};
+use super::settings::Settings;
 use super::skin::Skins;
-use super::unread;
-use super::upload;
+use super::source::Source;
 use super::view::{self, ViewConstants};
+use super::{relight, unread, upload};
 use crate::failure::{Failure, Outcome};
-#[cfg(feature = "fog")]
-use crate::measure::lights::LightStat;
-use crate::measure::pass::{self, PassWork};
 
 /// Everything a frame is declared from.
 pub struct Renderer<'d> {
@@ -82,42 +74,6 @@ pub struct EnvironmentMap {
     pub(super) rotation: DQuat,
 }
 
-/// A picture, and what it took.
-pub struct Picture {
-    /// Scene-linear RGB.
-    pub linear: FloatImage,
-    /// sRGB bytes, exposed and tone-mapped.
-    pub display: Vec<[u8; 3]>,
-    /// Device times of the passes; `None` with too few frames.
-    pub timing: Option<TimingSummary>,
-    /// CPU milliseconds of recording each frame.
-    pub cpu_milliseconds: Vec<f64>,
-    /// What each pass does.
-    pub passes: Vec<PassWork>,
-    /// The lights of the fog pass in each view of the last frame.
-    #[cfg(feature = "fog")]
-    pub lights: Vec<LightStat>,
-    /// The frames that were timed, oldest first.
-    pub frames: Vec<FrameTimes>,
-    /// The clocks of device and CPU before and after the frames; `None` where the device does not tell.
-    pub calibrations: Option<[Calibration; 2]>,
-}
-
-/// A frame ready to be recorded as often as its topology stays.
-pub struct Compiled {
-    /// The plan and its transients.
-    pub execution: Execution,
-    /// The host's resources.
-    pub imports: Imports,
-    /// The ring of queries; `None` on a queue without timestamps, which draws all the same.
-    pub timing: Option<Timing>,
-    /// What changes from frame to frame while the plan stays.
-    pub turning: Turning,
-}
-
-/// Frames whose times are dropped.
-pub const WARM_UP: usize = 2;
-
 impl<'d> Renderer<'d> {
     /// Uploads the scene and what lights it, and makes a target of `picture` pixels.
     pub fn new(device: &'d Device<'d>, scene: &Scene, source: &Source, picture: [u32; 2]) -> Outcome<Self> {
@@ -146,15 +102,14 @@ impl<'d> Renderer<'d> {
             }
             None => [0.0; 3],
         };
-        let hdr = vk::Format::R32G32B32A32_SFLOAT;
-        if !device.renders(hdr) {
+        if !device.renders(HDR) {
             return Err(Failure::device(format!(
-                "the device cannot render to {hdr:?}; choose another with --device"
+                "the device cannot render to {HDR:?}; choose another with --device"
             )));
         }
         let [linear, display] = targets(device, picture)?;
         #[cfg(feature = "fog")]
-        let fog = SceneFog::new(device, scene, Some(&device_scene), hdr)?;
+        let fog = SceneFog::new(device, scene, Some(&device_scene), HDR)?;
         #[cfg(feature = "fog")]
         fog.iter().for_each(|fog| fog.name_tables(scene, &mut device_scene));
         #[cfg(feature = "fog")]
@@ -182,10 +137,10 @@ impl<'d> Renderer<'d> {
         let lights = !scene.lights.is_empty();
         #[cfg_attr(not(feature = "fog"), expect(unused_mut, reason = "only a medium adds to the sky"))]
         let mut pipelines =
-            Pipelines::new(context, hdr, lights, fogged.as_deref(), &mapped).map_err(Failure::work)?;
+            Pipelines::new(context, HDR, lights, fogged.as_deref(), &mapped).map_err(Failure::work)?;
         #[cfg(feature = "fog")]
         if fog.as_ref().is_some_and(|fog| fog.sky.is_some()) {
-            pipelines.sky.in_medium(context, hdr).map_err(Failure::work)?;
+            pipelines.sky.in_medium(context, HDR).map_err(Failure::work)?;
         }
         Ok(Self {
             device,
@@ -206,7 +161,7 @@ impl<'d> Renderer<'d> {
             #[cfg(feature = "fog")]
             fog,
             unread: unread::of_frame(scene, source).into_iter().chain(about_maps).collect(),
-            relight_bytes: lighting::relight_bytes(scene),
+            relight_bytes: relight::bytes(scene),
             relight_seconds: None,
             counters,
             linear,
@@ -222,6 +177,12 @@ impl<'d> Renderer<'d> {
         Ok(())
     }
 
+    /// Has `over` drawn over the picture in frames declared from now on that have a window.
+    #[cfg(feature = "view")]
+    pub fn draw_over(&mut self, over: Over) {
+        self.over = Some(over);
+    }
+
     /// The device that draws.
     pub fn device(&self) -> &'d Device<'d> {
         self.device
@@ -231,18 +192,6 @@ impl<'d> Renderer<'d> {
     #[cfg(any(feature = "view", feature = "shadow", feature = "normals"))]
     pub fn look(&mut self, camera: Camera) {
         self.camera = camera;
-    }
-
-    /// The exposure asked for, or as the scene file says; automatic exposure looks at one frame first.
-    pub fn exposure(&mut self, asked: Option<f32>, of_scene: Exposure, settings: &Settings) -> Outcome<f32> {
-        match (asked, of_scene) {
-            (Some(factor), _) if factor > 0.0 && factor.is_finite() => Ok(factor),
-            (Some(factor), _) => {
-                Err(Failure::usage(format!("--exposure is {factor}; expected a positive factor")))
-            }
-            (None, Exposure::Fixed { scale }) => Ok(scale),
-            (None, automatic) => Ok(automatic.scale(&self.draw(settings, 1)?.linear.pixels)),
-        }
     }
 
     /// The cameras' views, from left to right, with the environment turned by `turn`.
@@ -264,103 +213,15 @@ impl<'d> Renderer<'d> {
         cameras.iter().map(|camera| fog.view(camera, aspect, rotation)).collect()
     }
 
-    /// Turns the light and the sky of a declared frame; its plan stays.
-    pub fn turn(&self, turning: &Turning, settings: &Settings, turn: DQuat) -> Outcome {
-        for (shared, view) in turning.views.iter().zip(self.views(settings, turn)) {
-            shared.set(view);
-        }
-        #[cfg(feature = "fog")]
-        for (control, view) in turning.fog.iter().zip(self.fog_views(settings, turn)?) {
-            control.set(&view).map_err(Failure::work)?;
-        }
-        #[cfg(feature = "radiance")]
-        if let (Some(control), Lighting::Relight(lit)) = (&turning.near, &self.lighting)
-            && let Some(near) = &lit.near
-        {
-            let filter = frame::filter(self, settings);
-            near.turn(control, Arrival { turn, filter: filter.as_deref() })?;
-        }
-        match (&turning.rotations, &self.environment, &self.lighting) {
-            (Some(rotations), Some(map), Lighting::Relight(lit)) => {
-                #[cfg(feature = "normals")]
-                if let (Some(rotations), Some(incident)) = (&turning.incident, &lit.incident) {
-                    incident.turn(rotations, turn * map.rotation, &lit.orientations())?;
-                }
-                rotations.set(turn * map.rotation, &lit.orientations()).map_err(Failure::work)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The median device time of the relight pass in a frame, seconds.
-    pub fn measure_relight(&mut self, settings: &Settings) -> Outcome<Option<f64>> {
-        let timing = self.draw(settings, WARM_UP + 9)?.timing;
-        let passes = timing.map_or(Vec::new(), |timing| timing.passes);
-        let ours = || passes.iter().filter(|pass| pass.name.starts_with("relight"));
-        Ok(ours().next().is_some().then(|| ours().map(|pass| pass.median).sum()))
+    /// Has plans say so of what a scene does not hold because the host took it out.
+    pub fn say_left_out(&mut self, record: LeftOut) {
+        self.unread.retain(|other| other.what != record.what);
+        self.unread.push(record);
     }
 
     /// What a plan says of the time that leaving the pass out saves, seconds.
     pub fn say_relight_takes(&mut self, seconds: Option<f64>) {
         self.relight_seconds = seconds;
-    }
-
-    /// The plan of a frame.
-    pub fn plan(&mut self, settings: &Settings) -> Outcome<Plan<Record>> {
-        let declared = frame::declare(self, settings)?;
-        declared.graph.compile(&self.device.context().graph_limits()).map_err(Failure::work)
-    }
-
-    /// A frame compiled, with a ring of queries that keeps `frames` frames; with `statistics` the device counts too.
-    pub fn compile(&mut self, settings: &Settings, frames: usize, statistics: bool) -> Outcome<Compiled> {
-        let Declared { graph, imports, turning } = frame::declare(self, settings)?;
-        let context = self.device.context();
-        let plan = graph.compile(&context.graph_limits()).map_err(Failure::work)?;
-        let timing = Timing::new(context, plan.steps().len() as u32, WARM_UP, frames);
-        let timing = match statistics {
-            true => Some(timing.and_then(Timing::with_pipeline_statistics).map_err(Failure::device)?),
-            false => timing.ok(),
-        };
-        let prepare = if settings.share_transients { Execution::prepare_shared } else { Execution::prepare };
-        let execution = prepare(context, plan).map_err(Failure::work)?;
-        Ok(Compiled { execution, imports, timing, turning })
-    }
-
-    /// Draws `frames` frames and reads the last one back.
-    pub fn draw(&mut self, settings: &Settings, frames: usize) -> Outcome<Picture> {
-        self.draw_counted(settings, frames, false)
-    }
-
-    /// The same, with pipeline statistics if asked for.
-    pub fn draw_counted(&mut self, settings: &Settings, frames: usize, statistics: bool) -> Outcome<Picture> {
-        let Compiled { mut execution, imports, mut timing, turning } =
-            self.compile(settings, frames, statistics)?;
-        let context = self.device.context();
-        let turn_light = |frame: usize| {
-            // One plan for all frames: only the rotation of the light and of the views' sky changes.
-            let turn = DQuat::from_rotation_y(settings.spin * frame as f64) * settings.turn;
-            self.move_to(settings.time + settings.step * frame as f64)?;
-            self.turn(&turning, settings, turn)
-        };
-        let before = context.calibrate().map_err(Failure::work)?;
-        let cpu_milliseconds =
-            self.device.frames(&mut execution, &imports, timing.as_mut(), frames, turn_light)?;
-        let after = context.calibrate().map_err(Failure::work)?;
-        let size = settings.picture_size();
-        let pixels = size[0] as usize * size[1] as usize;
-        let linear: Vec<f32> = self.linear.read(0, 3 * pixels).map_err(Failure::work)?;
-        let display: Vec<[u8; 4]> = self.display.read(0, pixels).map_err(Failure::work)?;
-        Ok(Picture {
-            linear: view::picture(size, &linear),
-            display: display.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
-            timing: timing.as_ref().and_then(Timing::summary),
-            cpu_milliseconds,
-            passes: pass::work(&execution),
-            #[cfg(feature = "fog")]
-            lights: turning.fog.iter().map(|control| control.counts().into()).collect(),
-            frames: timing.iter().flat_map(Timing::frames).cloned().collect(),
-            calibrations: before.zip(after).map(|(before, after)| [before, after]),
-        })
     }
 }
 

@@ -9,6 +9,8 @@ use airglow_scene::{
 use bytemuck::{Pod, Zeroable};
 use half::f16;
 
+#[cfg(all(feature = "normals", feature = "relight"))]
+use super::needed;
 use super::{texture, upload};
 
 /// Everything that the draws of a scene read and that does not change from frame to frame.
@@ -140,7 +142,7 @@ const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 fn has_normals(scene: &Scene, mesh: usize) -> bool {
     #[cfg(all(feature = "normals", feature = "relight"))]
     let mapped = (0..scene.instances.len())
-        .any(|number| scene.instances[number].mesh == mesh && super::mapped::is_drawn_on(scene, number));
+        .any(|number| scene.instances[number].mesh == mesh && needed::normal_map_on(scene, number));
     #[cfg(not(all(feature = "normals", feature = "relight")))]
     let (mapped, _) = (false, mesh);
     !scene.lights.is_empty() || mapped

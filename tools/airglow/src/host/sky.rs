@@ -7,7 +7,7 @@ use airglow_gpu::{
 };
 use airglow_graph::{Handle, Image};
 
-use super::draw::DEPTH;
+use super::formats::DEPTH;
 use super::scene::Sky;
 use super::shaders;
 

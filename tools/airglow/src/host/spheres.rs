@@ -9,9 +9,8 @@ use glam::{DMat4, DVec3, Mat4};
 use serde::{Deserialize, Serialize};
 
 use super::skin::bound;
-use super::transfer::file_name;
 use crate::failure::{Failure, Outcome};
-use crate::files;
+use crate::files::{self, file_name};
 use crate::output::Output;
 
 /// Version of the files; other ones are fitted anew.

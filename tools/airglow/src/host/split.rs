@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use super::renderer::Picture;
+use super::picture::Picture;
 
 /// Where one picture ends and the other begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

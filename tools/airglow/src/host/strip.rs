@@ -2,9 +2,11 @@
 
 use airglow_scene::FloatImage;
 
-use super::renderer::Picture;
+use super::picture::Picture;
 #[cfg(feature = "radiance")]
-use super::renderer::{Renderer, Settings};
+use super::renderer::Renderer;
+#[cfg(feature = "radiance")]
+use super::settings::Settings;
 #[cfg(feature = "radiance")]
 use crate::failure::Outcome;
 

@@ -6,7 +6,7 @@ use airglow_gpu::{
     VertexAttribute, VertexBufferLayout,
 };
 
-use super::draw::DEPTH;
+use super::formats::DEPTH;
 use super::scene::MaterialConstants;
 use super::shaders;
 

@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use super::holes;
 use crate::failure::{Failure, Outcome};
+use crate::files::file_name;
 use crate::output::Output;
 
 /// The transfer of a whole scene.
@@ -27,7 +28,7 @@ pub struct SceneTransfer {
     /// The spheres of what moves.
     #[cfg(all(feature = "relight", feature = "shadow"))]
     pub spheres: Vec<super::spheres::InstanceSpheres>,
-    /// The radiance pass's tree over all vertices, where there are emitters; built later for plans alone.
+    /// The radiance pass's tree over all vertices, once it is built; for plans alone it is not.
     #[cfg(all(feature = "relight", feature = "radiance"))]
     pub tree: Option<airglow::radiance::Hierarchy>,
     /// Whether the pass is to count bad texels of the environment.
@@ -116,10 +117,6 @@ pub fn of_scene(scene: &Scene, quality: &Quality, cache: &Path, output: &Output)
         let (transfer, account) = bake(job, quality, seen, cache, output)?;
         result.transfers.push(transfer);
         result.accounts.push(account);
-    }
-    #[cfg(all(feature = "relight", feature = "radiance"))]
-    {
-        result.tree = super::near_tree::of_scene(scene, &result, cache, output)?;
     }
     Ok(result)
 }
@@ -264,7 +261,7 @@ fn world_job<'a>(
 /// Whether the visibility of a transfer's vertices is asked for beside it: for the radiance that meets their normal maps.
 fn is_seen(scene: &Scene, instances: &[InstanceTransfer], transfer: usize) -> bool {
     #[cfg(all(feature = "normals", feature = "relight"))]
-    let gathers = |number| super::mapped::gathers(scene, number);
+    let gathers = |number| super::needed::incident_on(scene, number);
     #[cfg(not(all(feature = "normals", feature = "relight")))]
     let gathers = |_| scene.instances.is_empty();
     (0..instances.len()).any(|number| instances[number].transfer == transfer && gathers(number))
@@ -315,9 +312,4 @@ fn bake(
     };
     account.file = Some(file);
     Ok((transfer, account))
-}
-
-/// The name with everything but letters and digits replaced, and not too long.
-pub fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(48).collect()
 }

@@ -3,18 +3,14 @@
 use airglow_graph::LeftOut;
 use airglow_scene::{Instance, Material, Scene};
 
+use super::lights::MAX_LIGHTS;
 #[cfg(feature = "relight")]
-use super::lighting::Source;
-#[cfg(feature = "relight")]
-use super::renderer::Renderer;
-
-/// Lights that a draw takes; further ones are left out.
-pub const MAX_LIGHTS: usize = 64;
+use super::source::Source;
 
 /// One record for each kind of content that no pass of this frame uses.
 pub fn unread(scene: &Scene) -> Vec<LeftOut> {
     #[cfg(all(feature = "normals", feature = "relight"))]
-    let drawn = |material: &Material| super::mapped::is_drawn(scene, material);
+    let drawn = |material: &Material| super::needed::normal_map(scene, material);
     #[cfg(not(all(feature = "normals", feature = "relight")))]
     let drawn = |_: &Material| false;
     let unread = |material: &&Material| material.normal_texture.is_some() && !drawn(material);
@@ -55,15 +51,6 @@ pub fn of_frame(scene: &Scene, source: &Source) -> Vec<LeftOut> {
     #[cfg(not(feature = "radiance"))]
     let (idle, _) = (None, source);
     unread(scene).into_iter().chain(idle).collect()
-}
-
-#[cfg(feature = "relight")]
-impl Renderer<'_> {
-    /// Has plans say so of what a scene does not hold because the host took it out.
-    pub fn say_left_out(&mut self, record: LeftOut) {
-        self.unread.retain(|other| other.what != record.what);
-        self.unread.push(record);
-    }
 }
 
 /// The same as [`unread`] for people.

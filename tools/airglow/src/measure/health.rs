@@ -13,11 +13,6 @@ pub struct Count {
     count: u32,
 }
 
-/// Sets the counters to 0, before the frames.
-pub fn clear(device: &Device<'_>, health: &mut Health) -> Outcome {
-    device.run(|recorder| health.clear(recorder)).map_err(Failure::work)
-}
-
 /// The counts of all frames since.
 pub fn collect(device: &Device<'_>, health: &mut Health) -> Outcome<Vec<Count>> {
     let context = device.context();

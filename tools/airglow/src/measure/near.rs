@@ -1,7 +1,9 @@
 //! What the radiance pass sampled in a frame.
 
-use airglow::radiance::gpu::{LightShape, RefineState};
+use airglow::radiance::gpu::LightShape;
 use serde::Serialize;
+
+use crate::host::near::Sampled;
 
 /// The samples of the last frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -21,16 +23,16 @@ pub struct NearStat {
 
 impl NearStat {
     /// From what a frame left on the device.
-    pub fn new(state: Option<&RefineState>, lights: &[[f32; 4]], shape: LightShape, bound: f64) -> Self {
-        let Some(state) = state else { return Self::default() };
-        let exact = closed_forms(lights, shape).take(state.taken as usize);
+    pub fn new(sampled: &Sampled) -> Self {
+        let Some(state) = &sampled.state else { return Self::default() };
+        let exact = closed_forms(&sampled.lights, sampled.shape).take(state.taken as usize);
         Self {
             samples: state.taken,
             closed_forms: exact.filter(|exact| *exact).count() as u32,
             rounds: state.rounds,
             limit_hit: state.limited == 1,
             estimate: state.estimate,
-            bound,
+            bound: sampled.bound,
         }
     }
 
@@ -55,6 +57,7 @@ pub fn closed_forms(lights: &[[f32; 4]], shape: LightShape) -> impl Iterator<Ite
 #[cfg(test)]
 mod tests {
     use super::*;
+    use airglow::radiance::gpu::RefineState;
 
     #[test]
     fn closed_forms_are_counted_among_those_taken() {
@@ -64,10 +67,11 @@ mod tests {
             lights[sample * shape.stride() + shape.coefficients()][2] = 1.0;
         }
         let state = RefineState { taken: 2, limited: 1, rounds: 4, ..bytemuck::Zeroable::zeroed() };
-        let stat = NearStat::new(Some(&state), &lights, shape, 0.01);
+        let sampled = Sampled { state: Some(state), lights, shape, bound: 0.01 };
+        let stat = NearStat::new(&sampled);
         assert_eq!((stat.samples, stat.closed_forms), (2, 1));
         let line = stat.line();
         assert!(line.contains("2 samples in 4 rounds, 1 of them") && line.contains("stopped"), "{line}");
-        assert_eq!(NearStat::new(None, &[], shape, 0.01), NearStat::default());
+        assert_eq!(NearStat::new(&Sampled { state: None, ..sampled }), NearStat::default());
     }
 }

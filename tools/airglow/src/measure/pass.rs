@@ -2,25 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use airglow_gpu::{Counts, Execution, PassTime, TimingSummary};
+use airglow_gpu::{PassTime, TimingSummary};
 use serde::Serialize;
 
-use crate::report::html::bytes;
-
-/// What a pass did in the frame recorded last.
-#[derive(Clone, Debug)]
-pub struct PassWork {
-    /// Its name.
-    pub name: String,
-    /// Its counts.
-    pub counts: Counts,
-}
-
-/// The work of every pass, in the plan's order.
-pub fn work(execution: &Execution) -> Vec<PassWork> {
-    let passes = execution.plan().steps().iter().zip(execution.counts());
-    passes.map(|(step, &counts)| PassWork { name: step.name.clone(), counts }).collect()
-}
+use crate::host::work::PassWork;
+use crate::text::bytes;
 
 /// A pass as `--stat` writes it.
 #[derive(Debug, Serialize)]
@@ -102,6 +88,7 @@ fn count_text(name: &str, count: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use airglow_gpu::Counts;
 
     #[test]
     fn counts_stand_beside_times_or_alone() {

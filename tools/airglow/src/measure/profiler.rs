@@ -7,7 +7,9 @@ use serde::Serialize;
 use std::time::Instant;
 
 use crate::failure::{Failure, Outcome};
-use crate::host::renderer::{Compiled, Renderer, Settings};
+use crate::host::picture::Compiled;
+use crate::host::renderer::Renderer;
+use crate::host::settings::Settings;
 
 /// Pairs of frames whose times are dropped.
 const WARM_UP: usize = 2;

@@ -12,8 +12,9 @@ use super::profiler::ProfilerCost;
 #[cfg(feature = "shadow")]
 use super::shadow::ShadowStat;
 use crate::host::device::Device;
-use crate::host::renderer::{Picture, Settings, WARM_UP};
-use crate::report::model::Machine;
+use crate::host::machine::Machine;
+use crate::host::picture::{Picture, WARM_UP};
+use crate::host::settings::Settings;
 
 /// What `--stat` writes.
 #[derive(Serialize)]
@@ -81,7 +82,7 @@ impl Stat {
             record_ms: cpu.get(cpu.len() / 2).copied().unwrap_or(0.0),
             profiler,
             #[cfg(feature = "fog")]
-            lights: picture.lights.clone(),
+            lights: picture.lights.iter().copied().map(LightStat::from).collect(),
             #[cfg(feature = "radiance")]
             near: None,
             #[cfg(feature = "shadow")]
@@ -119,7 +120,7 @@ impl Stat {
         text.extend(self.shadow.iter().map(ShadowStat::line));
         text.extend(self.health.iter().map(Count::line));
         for owner in &self.memory {
-            text.push_str(&format!("  {:32} {}\n", owner.owner, crate::report::html::bytes(owner.bytes)));
+            text.push_str(&format!("  {:32} {}\n", owner.owner, crate::text::bytes(owner.bytes)));
         }
         text
     }

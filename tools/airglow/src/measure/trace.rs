@@ -7,8 +7,8 @@ use airglow_gpu::{Calibration, Context, FrameTimes};
 use serde_json::{Value, json};
 use std::time::Instant;
 
-use super::pass::PassWork;
-use crate::report::model::Machine;
+use crate::host::machine::Machine;
+use crate::host::work::PassWork;
 
 /// The lanes: thread numbers of one process.
 const CPU: u32 = 1;

@@ -7,6 +7,7 @@ use super::model::{Curve, Distribution, Errors, Number, Point, Report};
 use super::plot::{self, Cost};
 use super::ranking;
 use crate::failure::Outcome;
+use crate::text::{bytes, escape};
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:78em;margin:2em auto;padding:0 1em;color:#222}\
 table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;text-align:right}\
@@ -196,21 +197,6 @@ fn comparisons(html: &mut String, curve: &Curve) {
         );
     }
     html.push_str("</table>");
-}
-
-/// A count of bytes with a binary unit.
-pub fn bytes(count: u64) -> String {
-    let count = count as f64;
-    match count {
-        c if c >= 1024.0 * 1024.0 => format!("{:.2} MiB", c / (1024.0 * 1024.0)),
-        c if c >= 1024.0 => format!("{:.1} KiB", c / 1024.0),
-        c => format!("{c} B"),
-    }
-}
-
-/// Text made safe inside HTML.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

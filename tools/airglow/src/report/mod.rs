@@ -1,5 +1,7 @@
 //! Measurements as data, and what a reader makes of them: tables, plots, fronts and comparisons.
 
+#[cfg(feature = "relight")]
+pub mod bench;
 pub mod date;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod fog;
@@ -12,6 +14,8 @@ pub mod model;
 #[cfg(all(feature = "normals", feature = "relight"))]
 pub mod normals;
 pub mod pareto;
+#[cfg(feature = "relight")]
+pub mod pass;
 pub mod plot;
 pub mod presets;
 #[cfg(all(feature = "radiance", feature = "relight"))]

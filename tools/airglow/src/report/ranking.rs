@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::html::escape;
 use super::model::Curve;
+use crate::text::escape;
 
 /// Pixels: a row, where the bars begin, and their greatest length.
 const ROW: f64 = 18.0;

@@ -7,7 +7,7 @@ use super::interleave::{self, Rounds};
 use super::model::Counts;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::measure::pass;
+use crate::host::work;
 use crate::output::Output;
 
 /// A compiled plan, and where its queries end up.
@@ -53,7 +53,7 @@ impl TimedPlan {
 
     /// The work of the frame recorded last, of which `bytes` are read and written.
     pub fn counts(&self, bytes: u64) -> Counts {
-        let passes = pass::work(&self.execution).into_iter().map(|pass| pass.counts);
+        let passes = work::of_frame(&self.execution).into_iter().map(|pass| pass.counts);
         let all = passes.fold(airglow_gpu::Counts::default(), airglow_gpu::Counts::and);
         Counts {
             bytes,

@@ -3,7 +3,10 @@
 use airglow_scene::{LightKind, LocalTransform, Scene};
 use glam::{Vec2, Vec3};
 
-use super::overlay::{HANDLE, Projection};
+use super::projection::Projection;
+
+/// Points of a handle's radius.
+pub const HANDLE: f32 = 7.0;
 
 /// Something that can be dragged.
 #[derive(Clone, Debug, PartialEq)]

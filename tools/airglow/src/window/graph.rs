@@ -3,8 +3,7 @@
 use egui::epaint::{Mesh, Shape};
 use egui::{Color32, FontId, Rect, RichText, Sense, Ui, pos2, vec2};
 
-use super::panel::milliseconds;
-use super::style::{SERIES, WEAK};
+use super::style::{SERIES, WEAK, milliseconds};
 use super::times::Times;
 
 /// Points that the graph is high.

@@ -10,8 +10,10 @@ use super::controls::Action;
 use super::grab::{self, Handle};
 use super::interface::Interface;
 use super::knobs;
-use super::overlay::{self, Overlay, Projection};
-use super::panel::{self, Told};
+use super::overlay::{self, Overlay};
+use super::panel;
+use super::projection::Projection;
+use super::told::Told;
 use super::viewer::Viewer;
 use crate::failure::Outcome;
 

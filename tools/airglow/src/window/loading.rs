@@ -7,10 +7,10 @@ use std::time::Instant;
 use airglow_scene::{Environment, Scene};
 
 use super::wish::Wish;
-use crate::commands::scene::SceneOptions;
 use crate::failure::{Failure, Outcome};
-use crate::host::lighting::Source;
+use crate::host::source::Source;
 use crate::output::Output;
+use crate::scene_options::SceneOptions;
 
 /// What is loaded.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 //! `viewer` draws frame after frame; `surface` holds the window and its swapchain, `stage` the scene in it. `controls` and
 //! `wish` are what keys, mouse and panel change: what a frame follows at once, and what passes are made anew for (`knobs`),
 //! beside the frames where that takes long (`loading`). `camera` and `grab` are what the mouse moves, `interface` and `paint`
-//! egui in the window, `layout`, `panel`, `rooms` and `graph` what it lays out, `overlay` what it draws over the picture, `times` and
-//! `kept` what passes take and took. `reload` watches shaders, `shot` writes pictures of it all.
+//! egui in the window, `layout`, `panel`, `rooms` and `graph` what it lays out of what it is `told`, `overlay` what it draws over
+//! the picture by a `projection`, `times` and `kept` what passes take and took. `reload` watches shaders, `shot` writes pictures of it all.
 
 mod camera;
 pub mod controls;
@@ -19,6 +19,7 @@ mod loading;
 mod overlay;
 mod paint;
 mod panel;
+mod projection;
 pub mod reload;
 mod rooms;
 mod shot;
@@ -26,6 +27,7 @@ pub mod stage;
 mod style;
 mod surface;
 mod times;
+mod told;
 pub mod viewer;
 mod wish;
 

@@ -1,48 +1,19 @@
 //! The panel: what is drawn, what it takes, and what can be changed.
 
-use airglow_graph::LeftOut;
-use airglow_scene::{Medium, Presets};
 use egui::{
-    CollapsingHeader, Context, ProgressBar, Response, RichText, ScrollArea, SidePanel, Slider,
-    TopBottomPanel, Ui,
+    CollapsingHeader, Context, ProgressBar, RichText, ScrollArea, SidePanel, Slider, TopBottomPanel, Ui,
 };
 
 use super::controls::Controls;
 use super::graph;
 use super::interface::{Places, note};
 use super::rooms;
-use super::style;
-use super::times::Times;
-use super::wish::{KNOBS, Wish};
+use super::style::{WRONG, weak};
+use super::told::Told;
+use super::wish::Wish;
 
 /// Points that the panel is wide at first.
 const WIDTH: f32 = 318.0;
-
-/// What the panel tells.
-pub struct Told<'a> {
-    /// The device.
-    pub device: &'a str,
-    /// Frames in the last second.
-    pub rate: f64,
-    /// Pixels of the picture.
-    pub size: [u32; 2],
-    /// Device times.
-    pub times: &'a Times,
-    /// What was left out of the plan, and why.
-    pub left_out: &'a [LeftOut],
-    /// What the scene asks of passes.
-    pub presets: &'a Presets,
-    /// Of each knob, where its pass is built in.
-    pub values: [Option<f64>; KNOBS.len()],
-    /// Of the scene.
-    pub medium: Option<Medium>,
-    /// Passes that the scene has something for.
-    pub present: &'a [&'static str],
-    /// What is being done, and how far it is.
-    pub busy: Option<(String, Option<f32>)>,
-    /// What happened last, or what went wrong.
-    pub status: &'a Result<String, String>,
-}
 
 /// What the panel asks for beyond changes of the controls.
 #[derive(Clone, Copy, Debug, Default)]
@@ -91,18 +62,13 @@ fn happened(ui: &mut Ui, told: &Told<'_>) {
             ui.add(if part.is_none() { bar.animate(true) } else { bar });
         }
         (None, Ok(said)) => drop(weak(ui, said)),
-        (None, Err(wrong)) => drop(ui.label(RichText::new(wrong).small().color(style::WRONG))),
+        (None, Err(wrong)) => drop(ui.label(RichText::new(wrong).small().color(WRONG))),
     }
 }
 
 /// A part of the panel under a heading that folds.
 fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&mut Ui)) {
     CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, body);
-}
-
-/// Text that explains.
-pub fn weak(ui: &mut Ui, text: &str) -> Response {
-    ui.label(RichText::new(text).color(style::WEAK).small())
 }
 
 fn light(ui: &mut Ui, controls: &mut Controls, places: &mut Places) -> Asked {
@@ -144,9 +110,4 @@ fn left_out(ui: &mut Ui, told: &Told<'_>) {
         ui.label(&left_out.what);
         weak(ui, &left_out.why);
     }
-}
-
-/// A time as the panel writes it.
-pub fn milliseconds(time: f32) -> String {
-    if time < 10.0 { format!("{time:.2} ms") } else { format!("{time:.1} ms") }
 }

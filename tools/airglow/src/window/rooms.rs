@@ -8,11 +8,12 @@ use egui::{Align, Layout, Slider, Ui};
 use super::controls::Controls;
 use super::interface::{Places, note};
 use super::kept;
-use super::panel::{Told, milliseconds, weak};
+use super::style::{milliseconds, weak};
+use super::told::Told;
 use super::wish::{KNOBS, Wish};
-use crate::commands::scene::ROOMS;
-use crate::report::html::bytes;
 use crate::report::presets::table;
+use crate::scene_options::ROOMS;
+use crate::text::bytes;
 
 /// The passes in the order in which light travels.
 const ORDER: [&str; 5] = ["radiance", "shadow", "relight", "normals", "fog"];

@@ -10,9 +10,9 @@ use super::loading::{Load, Loading};
 use super::wish::{Remade, Wish};
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::lighting::Source;
 use crate::host::over::Over;
 use crate::host::renderer::Renderer;
+use crate::host::source::Source;
 use crate::output::Output;
 
 /// A scene on the device, and what is asked of it.

@@ -1,6 +1,6 @@
 //! How the panel looks: dark, so that the picture beside it is judged by itself, and a little transparent.
 
-use egui::{Color32, CornerRadius, Visuals};
+use egui::{Color32, CornerRadius, Response, RichText, Ui, Visuals};
 
 /// Behind the panel.
 pub const BACKGROUND: Color32 = Color32::from_rgba_premultiplied(20, 22, 26, 232);
@@ -30,4 +30,14 @@ pub fn visuals() -> Visuals {
     visuals.selection.bg_fill = Color32::from_rgb(0, 92, 128);
     visuals.window_corner_radius = CornerRadius::same(3);
     visuals
+}
+
+/// Text that explains.
+pub fn weak(ui: &mut Ui, text: &str) -> Response {
+    ui.label(RichText::new(text).color(WEAK).small())
+}
+
+/// A time as the panel writes it.
+pub fn milliseconds(time: f32) -> String {
+    if time < 10.0 { format!("{time:.2} ms") } else { format!("{time:.1} ms") }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use airglow_gpu::{FrameTimes, Timing};
 
-use crate::commands::scene::ROOMS;
+use crate::scene_options::ROOMS;
 
 /// Frames that are kept.
 const FRAMES: usize = 240;

@@ -28,7 +28,8 @@ use super::times::Times;
 use super::wish::Wish;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::renderer::{Air, Compiled, Settings};
+use crate::host::picture::Compiled;
+use crate::host::settings::{Air, Settings};
 use crate::host::shaders;
 
 /// Frames that the times printed at the end are medians of.

@@ -3,7 +3,7 @@
 use airglow_math::Preset;
 use airglow_scene::{Quality, Scene};
 
-use crate::commands::scene::ROOMS;
+use crate::scene_options::ROOMS;
 
 /// A setting that is turned alone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use airglow::fog::stability::{self, Sweep};
 use airglow::fog::{Bench, Fog, Phase, Preset, Settings};
 
 use super::{Arguments, Row, SweepTable, Table};
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
 use crate::output::Output;
 

@@ -4,8 +4,8 @@ use airglow::normals::stability::{self, Sweep};
 use airglow::normals::{Bench, Normals, Settings};
 
 use super::{Arguments, Row, SweepTable, Table};
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
 use crate::output::Output;
 

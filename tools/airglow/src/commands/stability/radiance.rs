@@ -7,8 +7,8 @@ use airglow::radiance::stability::{self, BOUND, FrameOutcome, Sweep};
 use airglow::radiance::{PassSettings, Radiance};
 
 use super::{Arguments, Row, SweepTable, Table};
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
 use crate::output::Output;
 

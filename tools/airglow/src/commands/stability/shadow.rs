@@ -14,8 +14,8 @@ use airglow::shadow::{Cap, Exponential, Settings, Shadow, ShadowError, Sphere};
 use glam::DVec3;
 
 use super::{Arguments, Row, Table};
-use crate::cli::Global;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
 use crate::output::Output;
 

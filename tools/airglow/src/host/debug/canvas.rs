@@ -5,8 +5,8 @@ use airglow_scene::{Material, Scene};
 use super::Shown;
 use crate::compare::legend::Values;
 use crate::failure::Outcome;
-use crate::host::lighting::Source;
 use crate::host::renderer::Renderer;
+use crate::host::source::Source;
 
 impl Shown<'_> {
     /// Draws three numbers a vertex, none below 0, for each instance; pixels without a surface have zeros.

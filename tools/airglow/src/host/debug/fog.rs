@@ -6,8 +6,8 @@ use airglow_scene::{Material, MaterialClass, Scene, luminance};
 use super::{Shown, View};
 use crate::compare::legend::Values;
 use crate::failure::{Failure, Outcome};
-use crate::host::lighting::{Reason, Source};
 use crate::host::renderer::Renderer;
+use crate::host::source::{Reason, Source};
 
 /// The views.
 pub const VIEWS: [View; 3] = [

@@ -18,8 +18,9 @@ mod shadow;
 use airglow_scene::Scene;
 
 use super::device::Device;
-use super::lighting::Source;
-use super::renderer::{Renderer, Settings};
+use super::renderer::Renderer;
+use super::settings::Settings;
+use super::source::Source;
 use crate::compare::legend::Values;
 use crate::failure::{Failure, Outcome};
 

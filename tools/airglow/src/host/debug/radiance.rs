@@ -8,8 +8,9 @@ use super::{Shown, View};
 use crate::compare::legend::Values;
 use crate::failure::{Failure, Outcome};
 use crate::host::emitters;
-use crate::host::lighting::{Lighting, Source};
-use crate::host::near::Placed;
+use crate::host::lighting::Lighting;
+use crate::host::placed::Placed;
+use crate::host::source::Source;
 
 /// The views.
 pub const VIEWS: [View; 4] = [

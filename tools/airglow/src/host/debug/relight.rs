@@ -5,7 +5,7 @@ use airglow_scene::luminance;
 use super::{Shown, View};
 use crate::compare::legend::Values;
 use crate::failure::{Failure, Outcome};
-use crate::host::lighting::Source;
+use crate::host::source::Source;
 
 /// The views.
 pub const VIEWS: [View; 3] = [

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use super::scaling::Scaling;
-use super::{FrameReport, PresetFrame, median_interval};
 use crate::failure::Outcome;
-use crate::report::html::{bytes, escape};
-use crate::report::model::Summary;
+use crate::report::lines::{self, Series};
+use crate::report::model::frame::{FrameReport, PresetFrame, median_interval};
+use crate::report::model::scaling::Scaling;
+use crate::report::model::{Point, Summary};
+use crate::text::{bytes, escape};
 
 /// Appends it.
 pub fn section(html: &mut String, frame: &FrameReport) -> Outcome {
@@ -24,7 +25,7 @@ pub fn section(html: &mut String, frame: &FrameReport) -> Outcome {
     if !frame.scalings.is_empty() {
         html.push_str("<h2>how time grows</h2><div class=\"plots\">");
         for scaling in &frame.scalings {
-            html.push_str(&scaling.svg()?);
+            html.push_str(&growth(scaling)?);
         }
         html.push_str("</div>");
         frame.scalings.iter().for_each(|scaling| sizes(html, scaling));
@@ -154,6 +155,21 @@ fn left_out(html: &mut String, frame: &FrameReport) {
     html.push_str("</table>");
 }
 
+/// The plot of a sweep: a line of the larger half's slope through its last point, and the medians; nothing without times.
+fn growth(scaling: &Scaling) -> Outcome<String> {
+    let median = |(at, point): &(f64, Point)| Some((*at, Summary::of(&point.milliseconds)?.median));
+    let measured: Vec<(f64, f64)> = scaling.points.iter().filter_map(median).collect();
+    let (Some([_, upper]), Some(last)) = (scaling.slopes, measured.last().copied()) else {
+        return Ok(String::new());
+    };
+    let fitted = measured.iter().map(|(at, _)| (*at, last.1 * (at / last.0).powf(upper[0]))).collect();
+    let series = [
+        Series { name: format!("slope {:.2}", upper[0]), points: fitted },
+        Series { name: "median of the rounds".to_owned(), points: measured },
+    ];
+    lines::svg(&scaling.what, "milliseconds", &series)
+}
+
 fn sizes(html: &mut String, scaling: &Scaling) {
     let _ = write!(html, "<h3>{}</h3><p>Timed: {}.", escape(&scaling.what), escape(&scaling.timed));
     if let Some([all, larger]) = scaling.slopes {
@@ -182,4 +198,23 @@ fn sizes(html: &mut String, scaling: &Scaling) {
         row(html, &format!("{at}"), [interval(&point.milliseconds), more].into_iter().chain(counts));
     }
     html.push_str("</table>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::model::testing;
+
+    #[test]
+    fn growth_is_drawn_with_its_slope_and_not_without_times() {
+        let point = |at: f64| {
+            let mut point = testing::report("a device").curves.remove(0).points.remove(0);
+            point.milliseconds = vec![at * at];
+            (at, point)
+        };
+        let of = |points| Scaling::new("things", "all".to_owned(), "", points);
+        let svg = growth(&of([1.0, 10.0, 100.0, 1000.0].map(point).into())).unwrap();
+        assert!(svg.contains("slope 2.00") && svg.contains("things"), "{svg}");
+        assert!(growth(&of(Vec::new())).unwrap().is_empty());
+    }
 }

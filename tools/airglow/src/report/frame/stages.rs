@@ -8,15 +8,17 @@ use airglow_gpu::{Execution, Imports, Timing};
 use airglow_math::statistics::relative_l2;
 use airglow_scene::{Presets, Quality, Scene};
 
-use super::{FrameReport, Missing, PassSamples, PresetFrame};
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
-use crate::host::lighting::Source;
-use crate::host::renderer::{Renderer, Settings};
+use crate::host::lighting;
+use crate::host::renderer::Renderer;
+use crate::host::settings::Settings;
+use crate::host::source::Source;
 use crate::host::transfer;
-use crate::measure::pass;
+use crate::host::work;
 use crate::output::Output;
 use crate::report::interleave::{self, Rounds};
+use crate::report::model::frame::{FrameReport, Missing, PassSamples, PresetFrame};
 use crate::report::model::{Counts, Errors, Point};
 
 /// A scene at each preset, before anything is on the device.
@@ -70,7 +72,7 @@ impl Stages {
 
     /// What the device must offer.
     pub fn requirements(&self) -> airglow_gpu::Requirements {
-        let all = self.made.iter().map(|(_, scene, source)| source.requirements(scene));
+        let all = self.made.iter().map(|(_, scene, source)| lighting::requirements(source, scene));
         all.reduce(|all, more| all.and(&more)).unwrap_or_else(airglow_gpu::Requirements::engine)
     }
 
@@ -184,14 +186,14 @@ impl<'d> Running<'d> {
 
     /// Dispatches, draws and barriers of the frame.
     fn counts(&self) -> [u64; 3] {
-        let of = |pass: &pass::PassWork| [pass.counts.dispatches, pass.counts.draws, pass.counts.barriers];
-        pass::work(&self.execution).iter().map(of).fold([0; 3], |a, b| [0, 1, 2].map(|i| a[i] + b[i]))
+        let of = |pass: &work::PassWork| [pass.counts.dispatches, pass.counts.draws, pass.counts.barriers];
+        work::of_frame(&self.execution).iter().map(of).fold([0; 3], |a, b| [0, 1, 2].map(|i| a[i] + b[i]))
     }
 
     /// The passes by name, without times.
     fn passes(&self) -> Vec<PassSamples> {
         let mut passes: Vec<PassSamples> = Vec::new();
-        for pass::PassWork { name, counts } in pass::work(&self.execution) {
+        for work::PassWork { name, counts } in work::of_frame(&self.execution) {
             let own = [counts.dispatches, counts.draws, counts.barriers];
             match passes.iter_mut().find(|pass| pass.name == name) {
                 Some(pass) => pass.counts = [0, 1, 2].map(|i| pass.counts[i] + own[i]),

@@ -2,11 +2,11 @@
 
 use airglow::relight::{Relight, Settings};
 
-use super::scaling::Scaling;
 use crate::failure::Outcome;
 use crate::host::device;
+use crate::report::bench::Bench;
 use crate::report::interleave::Rounds;
-use crate::report::presets::measure::Bench;
+use crate::report::model::scaling::Scaling;
 use crate::report::relight::scaling;
 
 /// Rounds of frames that are short.
@@ -49,8 +49,9 @@ impl Bench<'_> {
 
     #[cfg(feature = "fog")]
     fn lights(&self) -> Outcome<Scaling> {
-        use crate::commands::{report::Pass, scene::SceneOptions};
         use crate::report::fog::{Effort, Measurement};
+        use crate::report::pass::Pass;
+        use crate::scene_options::SceneOptions;
         let scene = SceneOptions::plain(Pass::Fog.scene().as_ref(), None).load(self.output)?;
         let requirements = airglow::fog::Fog::requirements(&airglow::fog::Settings::default());
         let points = device::with(self.global, &requirements, |device| {

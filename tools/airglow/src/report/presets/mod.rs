@@ -1,7 +1,5 @@
 //! What the shared presets of each room take on a device: measured, and as it was kept.
 
-#[cfg(feature = "relight")]
-pub mod measure;
 pub mod table;
 
 use airglow::math::Preset;

@@ -6,9 +6,9 @@ use airglow_math::Preset;
 use airglow_scene::Presets;
 use serde::Serialize;
 
-use crate::commands::scene::ROOMS;
-use crate::report::html::bytes;
 use crate::report::model::Errors;
+use crate::scene_options::ROOMS;
+use crate::text::bytes;
 
 /// One file for each device, each the `report.csv` of `airglow report presets`.
 const KEPT: [&str; 1] = [include_str!("../../../../../docs/measured/presets-llvmpipe.csv")];

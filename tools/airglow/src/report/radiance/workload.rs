@@ -13,8 +13,9 @@ use glam::{DMat3, DVec3};
 use super::truth;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
+use crate::host::placed::Placed;
 use crate::host::transfer::{self, SceneTransfer};
-use crate::host::{emitters, holes, near::Placed};
+use crate::host::{bake, emitters, holes};
 use crate::output::Output;
 use crate::report::relight::truth::Truth;
 
@@ -64,7 +65,7 @@ impl Workload {
             return Err(Failure::input("the scene has no emitter; add an [[emitter]] to the scene file"));
         }
         let quality = Quality { order: FULL_ORDER as u32, ..scene.quality };
-        let transfer = transfer::of_scene(scene, &quality, cache, output)?;
+        let transfer = bake::of_scene(scene, &quality, cache, output)?;
         let (positions, vectors) = in_the_world(scene, &transfer)?;
         output.say(format!("sampling light at {} vertices", positions.len()));
         let finest = sampled(device, &positions, &emitters, CONVERGED)?;

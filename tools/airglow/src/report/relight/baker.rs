@@ -7,7 +7,8 @@ use airglow_bake::cache::{CacheKey, Precision, store};
 use airglow_bake::{Baked, Mesh, Occluders, Settings, Silent, Threads, Transfer, bake};
 use glam::Mat4;
 
-use super::workload::{Effort, FULL_ORDER, truncate};
+use super::effort::Effort;
+use super::vectors::{FULL_ORDER, truncate};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::report::interleave;

@@ -6,9 +6,11 @@ use airglow::relight::{Bench, Method, Settings, Storage};
 use airglow_math::sequence::{hammersley, uniform_sphere};
 
 use super::choice;
+use super::effort::Effort;
 use super::errors;
 use super::rivals::{self, Timed, Transfer};
-use super::workload::{Effort, FULL_ORDER, Workload, truncate};
+use super::vectors::{FULL_ORDER, truncate};
+use super::workload::Workload;
 use crate::failure::{Failure, Outcome};
 use crate::host::device::Device;
 use crate::output::Output;

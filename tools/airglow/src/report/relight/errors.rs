@@ -5,7 +5,8 @@ use airglow_math::statistics::relative_l2;
 use glam::DQuat;
 
 use super::truth::flat;
-use super::workload::{Workload, truncate};
+use super::vectors::truncate;
+use super::workload::Workload;
 use crate::failure::{Failure, Outcome};
 use crate::report::model::Errors;
 

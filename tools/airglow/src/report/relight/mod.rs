@@ -3,6 +3,7 @@
 pub mod baker;
 pub mod choice;
 pub mod curves;
+pub mod effort;
 pub mod errors;
 mod presets;
 mod rays;
@@ -10,4 +11,5 @@ pub mod rivals;
 pub mod scaling;
 pub mod subset;
 pub mod truth;
+mod vectors;
 pub mod workload;

@@ -6,9 +6,9 @@ use super::choice;
 use super::curves::Measurement;
 use super::errors;
 use super::truth::Truth;
-use super::workload::FULL_ORDER;
+use super::vectors::FULL_ORDER;
 use crate::failure::{Failure, Outcome};
-use crate::host::device;
+use crate::host::machine;
 use crate::report::interleave;
 use crate::report::model::{Counts, Curve, Errors, Point};
 
@@ -93,5 +93,5 @@ impl Measurement<'_> {
 }
 
 fn processor() -> String {
-    device::processor().unwrap_or_else(|| "this machine's processors".to_owned())
+    machine::processor().unwrap_or_else(|| "this machine's processors".to_owned())
 }

@@ -7,10 +7,10 @@ use airglow_gpu::{Execution, Imports, Record, Timing};
 use airglow_graph::{Access, Graph};
 use glam::DQuat;
 
-use super::workload::tile;
+use super::vectors::tile;
 use crate::failure::{Failure, Outcome};
+use crate::host::work;
 use crate::host::{device::Device, upload};
-use crate::measure::pass;
 use crate::output::Output;
 use crate::report::interleave::{self, Rounds};
 use crate::report::model::Counts;
@@ -155,7 +155,7 @@ impl Rival {
 
     /// The work of the frame that was recorded last, without uploads.
     fn counts(&self) -> Counts {
-        let passes = pass::work(&self.execution).into_iter().filter(|pass| pass.name != UPLOADS);
+        let passes = work::of_frame(&self.execution).into_iter().filter(|pass| pass.name != UPLOADS);
         let all =
             passes.map(|pass| pass.counts).fold(airglow_gpu::Counts::default(), airglow_gpu::Counts::and);
         Counts {

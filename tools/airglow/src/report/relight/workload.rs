@@ -5,63 +5,14 @@ use airglow_math::sphere::equirect::Projector;
 use airglow_scene::{Environment, Scene, Shadow};
 
 use super::baker::{Bake, Baker};
+use super::effort::Effort;
 use super::subset::Subset;
 use super::truth::Truth;
+use super::vectors::FULL_ORDER;
 use crate::failure::{Failure, Outcome};
 use crate::host::environment_samples::EnvironmentSamples;
 use crate::host::{holes, transfer};
 use crate::output::Output;
-use crate::report::interleave::Rounds;
-
-/// The highest order with kernels: what is measured is truncated from it.
-pub const FULL_ORDER: usize = 6;
-
-/// How much is measured.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// Rays for each vertex of the bakes compared, ascending.
-    pub rays: Vec<u32>,
-    /// Rays for each vertex of the ray-traced truth, and of the converged bake: at least four times the most of
-    /// `rays`.
-    pub truth_rays: u32,
-    /// Vertices lit: a larger mesh is thinned to about as many.
-    pub lit: usize,
-    /// Vertices whose bake is timed, about.
-    pub timed_bake: usize,
-    /// How often each bake is timed.
-    pub bake_rounds: Rounds,
-    /// Vertices that frame times are measured at.
-    pub vertices: usize,
-    /// Rounds of interleaved timing of frames.
-    pub rounds: Rounds,
-}
-
-impl Effort {
-    /// What a committed report is made with, or with `quick` enough to see the shape of the curves.
-    pub fn new(quick: bool) -> Self {
-        let (timed_bake, vertices) = (512, 100_000);
-        if quick {
-            return Self {
-                rays: vec![64, 256, 1024],
-                truth_rays: 4096,
-                lit: 4096,
-                timed_bake,
-                bake_rounds: Rounds { warm_up: 0, measured: 5 },
-                vertices,
-                rounds: Rounds { warm_up: 2, measured: 9 },
-            };
-        }
-        Self {
-            rays: vec![64, 256, 1024, 4096, 16_384],
-            truth_rays: 65_536,
-            lit: 16_384,
-            timed_bake,
-            bake_rounds: Rounds { warm_up: 1, measured: 9 },
-            vertices,
-            rounds: Rounds { warm_up: 3, measured: 41 },
-        }
-    }
-}
 
 /// The mesh, its light and its bakes.
 pub struct Workload {
@@ -151,17 +102,6 @@ fn counted(mesh: &Mesh<'_>, lit: usize) -> String {
         String::new()
     };
     format!("{} ({all} vertices{part})", mesh.name)
-}
-
-/// The first `order`^2 coefficients of vectors of [`FULL_ORDER`].
-pub fn truncate(vectors: &[f32], order: usize) -> Vec<f32> {
-    let rows = vectors.chunks_exact(FULL_ORDER * FULL_ORDER);
-    rows.flat_map(|row| row[..order * order].iter().copied()).collect()
-}
-
-/// The vectors repeated until there are `vertices` of them.
-pub fn tile(vectors: &[f32], order: usize, vertices: usize) -> Vec<f32> {
-    vectors.iter().copied().cycle().take(vertices * order * order).collect()
 }
 
 /// The environment in the world, exactly.

@@ -5,13 +5,15 @@ use std::path::Path;
 use airglow::relight::{Relight, Settings};
 use airglow_scene::Scene;
 
-use crate::cli::Global;
 use crate::failure::Outcome;
+use crate::global::Global;
 use crate::host::device;
+use crate::host::machine::Machine;
 use crate::output::Output;
-use crate::report::model::{Curve, Machine};
+use crate::report::model::Curve;
 use crate::report::relight::curves::Measurement;
-use crate::report::relight::workload::{Effort, Workload};
+use crate::report::relight::effort::Effort;
+use crate::report::relight::workload::Workload;
 
 /// What measuring takes, beside a scene.
 #[derive(Clone, Copy)]

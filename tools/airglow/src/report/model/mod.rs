@@ -1,9 +1,13 @@
 //! A report as plain data: what was measured, where, and every raw sample. JSON holds exactly this.
 
+pub mod frame;
+pub mod scaling;
+
 use airglow_math::statistics;
 use serde::{Deserialize, Serialize};
 
-use super::frame::FrameReport;
+use crate::host::machine::Machine;
+use frame::FrameReport;
 
 /// One run of measurements of one pass on one device.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,21 +45,6 @@ pub struct Number {
     pub measured: String,
     /// Whether that is as asked.
     pub holds: bool,
-}
-
-/// The device and its driver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Machine {
-    /// Device name as the driver states it.
-    pub device: String,
-    /// discrete, integrated, virtual, cpu or other.
-    pub kind: String,
-    /// Driver name and version.
-    pub driver: String,
-    /// Clocks, where the system says.
-    pub clocks: Option<String>,
-    /// Whether the driver computes on the CPU, so that the order of rivals may differ on a GPU.
-    pub software: bool,
 }
 
 /// What happens to error, time and memory as one knob turns.

@@ -6,9 +6,7 @@
 use airglow_math::statistics;
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Outcome;
-use crate::report::lines::{self, Series};
-use crate::report::model::{Point, Summary};
+use super::Point;
 
 /// A sweep of sizes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -30,21 +28,6 @@ impl Scaling {
     pub fn new(what: &str, timed: String, cut: &str, points: Vec<(f64, Point)>) -> Self {
         let slopes = || Some([slope(&points)?, slope(&points[points.len() / 2..])?]);
         Self { what: what.to_owned(), timed, cut: cut.to_owned(), slopes: slopes(), points }
-    }
-
-    /// The plot: a line of the larger half's slope through its last point, and the medians.
-    pub fn svg(&self) -> Outcome<String> {
-        let median = |(at, point): &(f64, Point)| Some((*at, Summary::of(&point.milliseconds)?.median));
-        let measured: Vec<(f64, f64)> = self.points.iter().filter_map(median).collect();
-        let (Some([_, upper]), Some(last)) = (self.slopes, measured.last().copied()) else {
-            return Ok(String::new());
-        };
-        let fitted = measured.iter().map(|(at, _)| (*at, last.1 * (at / last.0).powf(upper[0]))).collect();
-        let series = [
-            Series { name: format!("slope {:.2}", upper[0]), points: fitted },
-            Series { name: "median of the rounds".to_owned(), points: measured },
-        ];
-        lines::svg(&self.what, "milliseconds", &series)
     }
 }
 
@@ -89,14 +72,10 @@ mod tests {
         assert!((square.slopes.unwrap()[0][0] - 2.0).abs() < 1e-9, "{:?}", square.slopes);
         let [all, larger] = measured(|at| 10.0 + at).slopes.unwrap();
         assert!(all[0] < larger[0] && larger[0] < 1.0, "{all:?} {larger:?}");
-        let svg = square.svg().unwrap();
-        assert!(svg.contains("slope 2.00") && svg.contains("things"), "{svg}");
     }
 
     #[test]
-    fn without_times_there_is_no_slope_and_no_plot() {
-        let none = Scaling::new("things", "all".to_owned(), "all of it", Vec::new());
-        assert_eq!(none.slopes, None);
-        assert!(none.svg().unwrap().is_empty());
+    fn without_times_there_is_no_slope() {
+        assert_eq!(Scaling::new("things", "all".to_owned(), "all of it", Vec::new()).slopes, None);
     }
 }

@@ -5,18 +5,20 @@ use std::path::Path;
 
 use airglow_scene::Scene;
 
-use crate::cli::Global;
-use crate::commands::report::{Arguments, Pass};
-use crate::commands::scene::{CACHE, SceneOptions};
+use super::Arguments;
 use crate::failure::{Failure, Outcome};
+use crate::global::Global;
 use crate::host::device;
+use crate::host::machine::Machine;
 use crate::output::Output;
+use crate::report::bench::{Bench, Measured};
 use crate::report::date::today;
-use crate::report::frame::scaling::Scaling;
 use crate::report::frame::stages::Stages;
 use crate::report::interleave::Rounds;
-use crate::report::model::{Curve, Machine, Report};
-use crate::report::presets::measure::{Bench, Measured};
+use crate::report::model::scaling::Scaling;
+use crate::report::model::{Curve, Report};
+use crate::report::pass::Pass;
+use crate::scene_options::{CACHE, SceneOptions};
 
 /// The map with most to filter.
 #[cfg(feature = "normals")]
