@@ -65,7 +65,7 @@ impl Tree {
     }
 
     /// The names below a module that `names` in the module at `home` stand for.
-    fn absolute<'a>(&self, home: &Place, names: &[String], steps: usize) -> Option<(Place, Vec<String>)> {
+    fn absolute(&self, home: &Place, names: &[String], steps: usize) -> Option<(Place, Vec<String>)> {
         let (first, rest) = names.split_first()?;
         let contents = &self.modules.get(home)?.contents;
         match first.as_str() {
