@@ -5,7 +5,6 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::exponential::Exponential;
 use crate::order::MIN_ORDER;
-use crate::pixels::{PIXEL_BINDINGS, PixelConstants};
 use crate::polynomial;
 use crate::table::{LINEAR_STEPS, Tables};
 
@@ -59,6 +58,18 @@ pub const VISIBILITY_BINDINGS: [BindingDesc; 9] = [
     uniform(8),
 ];
 
+/// Bindings of `pixels.comp`: positions, normals, spheres, factors, picture, table of the exponential, nodes, products.
+pub const PIXEL_BINDINGS: [BindingDesc; 8] = [
+    BindingDesc::new(0, BindingKind::SampledImage),
+    BindingDesc::new(1, BindingKind::SampledImage),
+    BindingDesc::new(2, BindingKind::UniformBuffer),
+    BindingDesc::new(3, BindingKind::UniformBuffer),
+    BindingDesc::new(4, BindingKind::StorageImage),
+    BindingDesc::new(7, BindingKind::StorageBuffer),
+    BindingDesc::new(8, BindingKind::UniformBuffer),
+    BindingDesc::new(9, BindingKind::UniformBuffer),
+];
+
 /// Bindings of `rows.comp`: rows, results, and the table of the exponential where it is read.
 pub const ROW_BINDINGS: [BindingDesc; 3] = [storage(0), storage(1), storage(2)];
 
@@ -68,6 +79,30 @@ pub const CLAMPED: u32 = 1;
 pub const CONTINUED: u32 = 2;
 /// Flag: ends without exponential.
 pub const LOGARITHM: u32 = 4;
+
+/// `Settings` of `pixels.comp`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PixelConstants {
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Nodes.
+    pub count: u32,
+    /// 1: clamped.
+    pub flags: u32,
+    /// Least height of a cap.
+    pub reach: f32,
+    /// Height of a cap below which a node stands for what it holds.
+    pub cut: f32,
+    /// Strength of the window.
+    pub window: f32,
+    /// Angular radius of the disc; 0: none.
+    pub disc_radius: f32,
+    /// Its direction.
+    pub disc: [f32; 4],
+    /// Its irradiance.
+    pub irradiance: [f32; 4],
+}
 
 /// `Settings` of `visibility.comp`.
 #[repr(C)]

@@ -2,17 +2,15 @@
 
 use airglow_gpu::ash::vk::Format;
 use airglow_gpu::{
-    Binding, BindingDesc, BindingKind, Buffer, ComputePipeline, Context, GpuError, ImageView, Kernel, Record,
-    Recorder, Requirements,
+    Binding, Buffer, ComputePipeline, Context, GpuError, ImageView, Kernel, Record, Recorder, Requirements,
 };
 use airglow_graph::{Access, Graph, Handle, Image, ImageDesc, LeftOut, PassKind};
-use bytemuck::{Pod, Zeroable};
 
 use crate::ShadowError;
 use crate::blockers::Blockers;
 use crate::envelope::Pipelines;
 use crate::exponential::Exponential;
-use crate::kernels;
+use crate::kernels::{self, PIXEL_BINDINGS, PixelConstants};
 use crate::light::{Disc, Products};
 use crate::polynomial;
 use crate::settings::Settings;
@@ -22,48 +20,12 @@ use crate::table::Tables;
 /// Sides of a tile.
 const TILE: u32 = 8;
 
-/// Bindings of `pixels.comp`: positions, normals, spheres, factors, picture, table of the exponential, nodes, products.
-pub const PIXEL_BINDINGS: [BindingDesc; 8] = [
-    BindingDesc::new(0, BindingKind::SampledImage),
-    BindingDesc::new(1, BindingKind::SampledImage),
-    BindingDesc::new(2, BindingKind::UniformBuffer),
-    BindingDesc::new(3, BindingKind::UniformBuffer),
-    BindingDesc::new(4, BindingKind::StorageImage),
-    BindingDesc::new(7, BindingKind::StorageBuffer),
-    BindingDesc::new(8, BindingKind::UniformBuffer),
-    BindingDesc::new(9, BindingKind::UniformBuffer),
-];
-
 /// What the pass does with a host's images, for a host with a frame graph of its own: names as in [`PixelViews`].
 pub const PIXEL_ACCESSES: [(&str, Access); 3] = [
     ("positions", Access::ComputeSampled),
     ("normals", Access::ComputeSampled),
     ("picture", Access::ComputeStorageWrite),
 ];
-
-/// `Settings` of `pixels.comp`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub struct PixelConstants {
-    /// Pixels.
-    pub size: [u32; 2],
-    /// Nodes.
-    pub count: u32,
-    /// 1: clamped.
-    pub flags: u32,
-    /// Least height of a cap.
-    pub reach: f32,
-    /// Height of a cap below which a node stands for what it holds.
-    pub cut: f32,
-    /// Strength of the window.
-    pub window: f32,
-    /// Angular radius of the disc; 0: none.
-    pub disc_radius: f32,
-    /// Its direction.
-    pub disc: [f32; 4],
-    /// Its irradiance.
-    pub irradiance: [f32; 4],
-}
 
 /// The images of one recording, all of the size it is given.
 #[derive(Clone)]
