@@ -2,15 +2,18 @@
 
 use std::time::{Duration, Instant};
 
-use airglow_gpu::ash::vk::BufferUsageFlags;
-use airglow_gpu::{Binding, Buffer, ComputePipelineDesc, Context, GpuError, Label, Location, Recorder};
-use airglow_graph::{Access, BufferDesc};
+use airglow_gpu::ash::vk::{BufferUsageFlags, Format, ImageUsageFlags};
+use airglow_gpu::{
+    Binding, Buffer, ComputePipelineDesc, Context, GpuError, Image, Label, Location, Recorder,
+};
+use airglow_graph::{Access, BufferDesc, ImageDesc, State};
 use bytemuck::Pod;
 use glam::DMat4;
 
 use crate::blockers::Blockers;
 use crate::exponential::Exponential;
 use crate::kernels::{self, Kind, Program, ROW_BINDINGS, RowConstants};
+use crate::pixels::{PixelLight, PixelShadow, PixelViews};
 use crate::settings::Settings;
 use crate::shadow::{Bindings, Shadow};
 use crate::table::Tables;
@@ -216,6 +219,62 @@ impl Bench<'_> {
         Ok(Frame { values: self.read(&visibility)?, counts, times })
     }
 
+    /// Runs the pass per pixel once over a picture of `size` whose positions and normals are given row by row, as
+    /// [`PixelViews`] says.
+    ///
+    /// # Errors
+    /// [`ShadowError::Gpu`], for texels that do not fill the picture, too.
+    pub fn pixels(
+        &self,
+        shadow: &PixelShadow,
+        size: [u32; 2],
+        surfaces: [&[[f32; 4]]; 2],
+        blockers: &Blockers,
+        light: &PixelLight,
+    ) -> Result<Vec<[f32; 4]>, ShadowError> {
+        let [positions, normals] = surfaces.map(|texels| self.image(size, texels));
+        let (positions, normals) = (positions?, normals?);
+        let usage = ImageUsageFlags::STORAGE | ImageUsageFlags::TRANSFER_SRC;
+        let desc = ImageDesc { usage, ..ImageDesc::new_2d(size[0], size[1], PixelShadow::FORMAT) };
+        let picture = self.context.create_image(Label::new(OWNER, "picture"), &desc)?;
+        let views = PixelViews {
+            positions: positions.full_view()?,
+            normals: normals.full_view()?,
+            picture: picture.full_view()?,
+        };
+        let mut copy = None;
+        (self.run)(&mut |recorder| {
+            recorder.transition(&picture, State::UNDEFINED, Access::ComputeStorageWrite)?;
+            shadow.record(recorder, size, blockers, light, &views)?;
+            recorder.transition(&picture, Access::ComputeStorageWrite, Access::TransferSource)?;
+            copy = Some(recorder.read_back_image(&views.picture)?);
+            Ok(())
+        })?;
+        Ok(copy.ok_or_else(not_recorded)?.texels()?)
+    }
+
+    /// An image of these texels, ready to be sampled.
+    ///
+    /// # Errors
+    /// [`GpuError`], for texels that do not fill it, too.
+    pub fn image(&self, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> Result<Image, GpuError> {
+        let usage = ImageUsageFlags::TRANSFER_DST | ImageUsageFlags::SAMPLED;
+        let desc = ImageDesc { usage, ..ImageDesc::new_2d(width, height, Format::R32G32B32A32_SFLOAT) };
+        let image = self.context.create_image(Label::new(OWNER, "surfaces"), &desc)?;
+        let desc = BufferDesc {
+            size: 16 * u64::from(width) * u64::from(height),
+            usage: Access::TransferSource.buffer_usage(),
+        };
+        let staging = self.context.create_buffer(Label::new(OWNER, "texels"), &desc, Location::Upload)?;
+        staging.write(0, texels)?;
+        (self.run)(&mut |recorder| {
+            recorder.transition(&image, State::UNDEFINED, Access::TransferDestination)?;
+            recorder.copy_buffer_to_image(&staging, &image.full_view()?)?;
+            recorder.transition(&image, Access::TransferDestination, Access::ComputeSampled)
+        })?;
+        Ok(image)
+    }
+
     fn upload<T: Pod>(&self, name: &str, values: &[T]) -> Result<Buffer, GpuError> {
         let desc = BufferDesc { size: size_of_val(values) as u64, usage: BufferUsageFlags::STORAGE_BUFFER };
         let buffer = self.context.create_buffer(Label::new(OWNER, name), &desc, Location::Upload)?;
@@ -237,6 +296,10 @@ impl Bench<'_> {
             copy = Some(recorder.read_back_buffer(buffer)?);
             Ok(())
         })?;
-        copy.ok_or_else(|| GpuError::misuse("the bench", "its host did not record the frame"))?.read()
+        copy.ok_or_else(not_recorded)?.read()
     }
+}
+
+fn not_recorded() -> GpuError {
+    GpuError::misuse("the bench", "its host did not record the frame")
 }

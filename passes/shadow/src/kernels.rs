@@ -54,7 +54,7 @@ pub const VISIBILITY_BINDINGS: [BindingDesc; 9] = [
     storage(4),
     storage(5),
     storage(6),
-    storage(7),
+    uniform(7),
     uniform(8),
 ];
 
@@ -65,7 +65,7 @@ pub const PIXEL_BINDINGS: [BindingDesc; 8] = [
     BindingDesc::new(2, BindingKind::UniformBuffer),
     BindingDesc::new(3, BindingKind::UniformBuffer),
     BindingDesc::new(4, BindingKind::StorageImage),
-    BindingDesc::new(7, BindingKind::StorageBuffer),
+    BindingDesc::new(7, BindingKind::UniformBuffer),
     BindingDesc::new(8, BindingKind::UniformBuffer),
     BindingDesc::new(9, BindingKind::UniformBuffer),
 ];
@@ -88,7 +88,7 @@ pub struct PixelConstants {
     pub size: [u32; 2],
     /// Nodes.
     pub count: u32,
-    /// 1: clamped.
+    /// 1: clamped. 2: the share of the light.
     pub flags: u32,
     /// Least height of a cap.
     pub reach: f32,

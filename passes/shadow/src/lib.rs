@@ -62,7 +62,7 @@ pub use light::{Disc, Products, SplitSettings};
 pub use linear::Linear;
 pub use logarithm::{CLIP, Logarithm};
 pub use order::{MAX_ORDER, MIN_ORDER, check_order};
-pub use pixels::{PIXEL_ACCESSES, PixelLight, PixelShadow, PixelViews};
+pub use pixels::{PIXEL_ACCESSES, PixelLight, PixelLights, PixelPicture, PixelShadow, PixelViews};
 pub use settings::Settings;
 pub use shadow::{ACCESSES, Bindings, Receivers, Shadow};
 pub use table::Tables;

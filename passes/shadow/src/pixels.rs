@@ -1,5 +1,7 @@
 //! The pass per pixel: shadows on what a host has drawn, by images of positions and normals; light comes out.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use airglow_gpu::ash::vk::Format;
 use airglow_gpu::{
     Binding, Buffer, ComputePipeline, Context, GpuError, ImageView, Kernel, Record, Recorder, Requirements,
@@ -30,12 +32,12 @@ pub const PIXEL_ACCESSES: [(&str, Access); 3] = [
 /// The images of one recording, all of the size it is given.
 #[derive(Clone)]
 pub struct PixelViews {
-    /// Points of surfaces in the space of the spheres, float; w 0 where there is none.
+    /// Points of surfaces in the space of the spheres, float; w 0 where there is none, and none is where a number is not
+    /// finite.
     pub positions: ImageView,
     /// Normals there, of any length but 0.
     pub normals: ImageView,
-    /// Written, [`PixelShadow::FORMAT`]: what a white diffuse surface reflects, linear RGB, and in a the share of the
-    /// sky that is open; 0 where there is no surface.
+    /// Written, [`PixelShadow::FORMAT`]: [`PixelPicture`], linear RGB, and in a the share of the sky that is open.
     pub picture: ImageView,
 }
 
@@ -46,6 +48,39 @@ pub struct PixelLight {
     pub products: Products,
     /// A sun-like peak that was taken out of it.
     pub disc: Option<Disc>,
+    /// What comes out.
+    pub picture: PixelPicture,
+}
+
+/// What the picture of the pass says of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PixelPicture {
+    /// What a white diffuse surface reflects of the light that spheres leave; 0 where there is no surface.
+    Light,
+    /// The share of that in what it would reflect without spheres, for a host that has lit its surfaces otherwise: 1, to
+    /// the last bit, where nothing blocks, and where there is no surface.
+    Share,
+}
+
+/// The light that the pass reads when it is recorded. Clones share it.
+#[derive(Clone, Debug)]
+pub struct PixelLights(Arc<Mutex<PixelLight>>);
+
+impl PixelLights {
+    /// Light to begin with.
+    #[must_use]
+    pub fn new(light: PixelLight) -> Self {
+        Self(Arc::new(Mutex::new(light)))
+    }
+
+    /// Sets the light from the next recording on.
+    pub fn set(&self, light: PixelLight) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = light;
+    }
+
+    fn get(&self) -> PixelLight {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 /// The pass per pixel, ready for a device, by the default exponential; receivers have normals always. Clones share it.
@@ -139,22 +174,23 @@ impl PixelShadow {
             Binding::uniform(2, &spheres),
             Binding::uniform(3, &self.factors),
             Binding::storage_image(4, views.picture.clone()),
-            Binding::storage(7, &self.table),
+            Binding::uniform(7, &self.table),
             Binding::uniform(8, &nodes),
             Binding::uniform(9, &products),
         ];
         recorder.bind_compute(&self.pipeline, &bound)?;
-        recorder.push_constants(&self.constants(size, range.len() as u32, light.disc))?;
+        recorder.push_constants(&self.constants(size, range.len() as u32, light))?;
         let [width, height] = size.map(|side| side.div_ceil(TILE));
         recorder.dispatch([width, height, 1])
     }
 
-    fn constants(&self, size: [u32; 2], count: u32, disc: Option<Disc>) -> PixelConstants {
+    fn constants(&self, size: [u32; 2], count: u32, light: &PixelLight) -> PixelConstants {
+        let disc = light.disc;
         let wide = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32, 0.0];
         PixelConstants {
             size,
             count,
-            flags: u32::from(self.settings.clamp),
+            flags: u32::from(self.settings.clamp) | u32::from(light.picture == PixelPicture::Share) << 1,
             reach: self.settings.reach as f32,
             cut: self.settings.cut as f32,
             window: self.settings.window as f32,
@@ -165,13 +201,14 @@ impl PixelShadow {
     }
 
     /// Adds the pass `shadow pixels` to a graph; the picture it makes. The plan may be recorded again in later frames;
-    /// [`Blockers::set`] moves the spheres in between. Where there are none now it is left out, with the reason.
+    /// [`Blockers::set`] moves the spheres in between, and [`PixelLights::set`] the light. Where there are no spheres now it
+    /// is left out, with the reason.
     pub fn add(
         &self,
         graph: &mut Graph<Record>,
         size: [u32; 2],
         blockers: &Blockers,
-        light: &PixelLight,
+        light: &PixelLights,
         [positions, normals]: [Handle<Image>; 2],
     ) -> Option<Handle<Image>> {
         if blockers.is_empty() {
@@ -197,7 +234,7 @@ impl PixelShadow {
                 normals: resources.view(&normals)?,
                 picture: resources.view(&picture)?,
             };
-            shadow.record(recorder, size, &blockers, &light, &views)
+            shadow.record(recorder, size, &blockers, &light.get(), &views)
         }));
         Some(picture)
     }

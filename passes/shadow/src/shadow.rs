@@ -14,6 +14,7 @@ use crate::envelope::Pipelines;
 use crate::kernels::{
     self, CLAMPED, CONTINUED, Kind, LOGARITHM, Program, VISIBILITY_BINDINGS, VisibilityConstants,
 };
+use crate::polynomial::{ROW, ROWS};
 use crate::settings::Settings;
 use crate::table::Tables;
 use crate::{Exponential, ShadowError, check_order};
@@ -153,7 +154,10 @@ impl Shadow {
         let tables = Tables::new(settings.order, settings.clip)?;
         let factors = upload(context, "factors", &tables.logarithm)?;
         let table = match program.table(&tables) {
-            Some((values, end)) => Some((upload(context, "exponential", &values)?, end)),
+            Some((mut values, end)) => {
+                values.resize(ROW * ROWS, 0.0);
+                Some((upload(context, "exponential", &values)?, end))
+            }
             None => None,
         };
         Ok(Self { settings, program, pipeline, pipeline_count, factors, table, logarithm: false })
@@ -261,7 +265,7 @@ impl Shadow {
             all.push(Binding::storage(6, normals));
         }
         if let Some((table, _)) = &self.table {
-            all.push(Binding::storage(7, table));
+            all.push(Binding::uniform(7, table));
         }
         recorder.bind_compute(&self.pipeline, &all)
     }

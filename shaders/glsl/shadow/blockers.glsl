@@ -38,18 +38,22 @@ layout(std140, set = 0, binding = 3) uniform Factors {
 
 #if EXPONENTIAL < 3
 // The table of the exponential: polynomials, or the numbers of the optimal linear one.
-layout(std430, set = 0, binding = 7) readonly buffer Table {
-    float values[];
+layout(std140, set = 0, binding = 7) uniform Table {
+    vec4 values[452];
 } table;
-#define SHADOW_TABLE(at) table.values[at]
+#define SHADOW_TABLE(at) table.values[(at) / 4u][(at) % 4u]
 #ifndef SHADOW_TABLE_END
 #define SHADOW_TABLE_END settings.end
 #endif
 #endif
 
-#include "common/sh_basis.glsl"
 #include "shadow/cap.glsl"
 #include "shadow/exponential.glsl"
+#if EXPONENTIAL < 7
+#include "shadow/sums.glsl"
+#else
+#include "common/sh_basis.glsl"
+#endif
 
 // By kind, one bit a node: small caps that count as they are, and others.
 const uint SMALL = 0u;
@@ -59,7 +63,6 @@ shared uint chosen[2][MOST_NODES / 32u];
 shared uint words[2];
 // Of nodes that are not small: the share they count by.
 shared float weights[MOST_NODES];
-
 
 // The largest square of the sine that a sphere may have as a cap from somewhere in a bound.
 float largest_square(vec4 sphere, vec4 bound)
@@ -91,9 +94,13 @@ void choose(uint lane, vec4 bound, float reach, float cut)
     }
     if (lane < 2u) { words[lane] = 0u; }
     barrier();
-    for (uint at = lane; at < settings.count; at += 64u / uint(RECEIVERS)) {
-        vec4 sphere = spheres.values[at];
-        vec4 node = nodes.values[at];
+    // Loops end where they are asked to go on: a driver whose lanes all take every branch runs through the rest of a loop
+    // that ends at its head once more.
+    uint at = lane;
+    do {
+        uint place = min(at, MOST_NODES - 1u);
+        vec4 sphere = spheres.values[place];
+        vec4 node = nodes.values[place];
         float sine2 = largest_square(sphere, bound);
         float height = height_of(sine2);
         float weight = node.z == 0.0 ? 1.0 : 1.0 - gives_way(height, cut);
@@ -101,7 +108,7 @@ void choose(uint lane, vec4 bound, float reach, float cut)
             float holder = height_of(largest_square(spheres.values[uint(node.y)], bound));
             weight -= 1.0 - gives_way(max(holder, height), cut);
         }
-        if (weight > 0.0 && sphere.w > 0.0 && height >= reach) {
+        if (at < settings.count && weight > 0.0 && sphere.w > 0.0 && height >= reach) {
 #if EXPONENTIAL < 7
             uint kind = weight == 1.0 && sine2 < factors.least.x ? SMALL : LARGE;
 #else
@@ -111,42 +118,53 @@ void choose(uint lane, vec4 bound, float reach, float cut)
             atomicOr(chosen[kind][at / 32u], 1u << (at % 32u));
             atomicMax(words[kind], at / 32u + 1u);
         }
-    }
+        at += 64u / uint(RECEIVERS);
+    } while (at < settings.count);
     barrier();
 }
 
-// Over the coefficients i of a band, with bounds that a compiler sees.
-#define BAND(l, begin, end, statement) for (int i = begin; i < end; ++i) { statement(i, l) }
-#if ORDER > 3
-#define BAND3(statement) BAND(3, 9, 16, statement)
-#else
-#define BAND3(statement)
-#endif
-#if ORDER > 4
-#define BAND4(statement) BAND(4, 16, 25, statement)
-#else
-#define BAND4(statement)
-#endif
-#if ORDER > 5
-#define BAND5(statement) BAND(5, 25, 36, statement)
-#else
-#define BAND5(statement)
-#endif
-#define EACH_BAND(statement)                                                                                            \
-    BAND(0, 0, 1, statement) BAND(1, 1, 4, statement) BAND(2, 4, 9, statement) BAND3(statement) BAND4(statement)        \
-    BAND5(statement)
+// A point of a surface.
+struct Receiver {
+    vec3 place;
+    vec3 normal; // of length 1; with NORMALS
+};
+
+// By bits: comparisons of what is no number are whatever a driver makes of them.
+bool finite(vec4 v)
+{
+    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec4(0x7f800000u)));
+}
 
 #if EXPONENTIAL < 7
-// Band factors of the logarithm of a small cap, by the square of its sine.
-void small_factors(vec4 polynomials[ORDER], float square, float scale, out float bands[ORDER])
+// Nodes that are taken up at once.
+const int TURNS = 2;
+
+// Adds the logarithms of two small caps, by polynomials of the square of the sine.
+void add_small(vec4 a, vec4 b, vec2 shares, Receiver receiver, vec4 polynomials[ORDER], inout float sum[COUNT])
 {
+#ifdef NORMALS
+    vec2 above;
+    a = shadow_above(a, receiver.place, receiver.normal, above.x);
+    b = shadow_above(b, receiver.place, receiver.normal, above.y);
+    shares *= above;
+#endif
+    vec2 x = vec2(a.x, b.x) - receiver.place.x;
+    vec2 y = vec2(a.y, b.y) - receiver.place.y;
+    vec2 z = vec2(a.z, b.z) - receiver.place.z;
+    // As shadow_cap, but for what small caps never are: around the receiver.
+    vec2 radii = vec2(a.w, b.w) * vec2(a.w, b.w);
+    vec2 inverse = inversesqrt(max(x * x + y * y + z * z, max(radii, vec2(1e-37))));
+    vec2 square = radii * inverse * inverse;
+    vec2 scale = shares * square;
+    vec2 bands[ORDER];
     for (int l = 0; l < ORDER; ++l) {
         vec4 c = polynomials[l];
         bands[l] = scale * (c.x + square * (c.y + square * (c.z + square * c.w)));
     }
+    sums_add(bands, inverse * x, inverse * y, inverse * z, sum);
 }
 
-// The same of any cap, by the table.
+// Band factors of the logarithm of any cap, by the table over the cosine.
 void large_factors(float square, float scale, out float bands[ORDER])
 {
     float place = sqrt(1.0 - square) * float(TABLE);
@@ -165,116 +183,77 @@ void large_factors(float square, float scale, out float bands[ORDER])
         bands[l] = scale * (here[l % 2] + t * more[l % 2]);
     }
 }
-#else
-// Band factors of the visibility of a cap less 1 (Sun 2008, equation 5.36).
-void visibility_factors(float square, float scale, out float bands[ORDER])
-{
-    const float TWO_PI = 6.28318530717959;
-    float c = sqrt(1.0 - square);
-    float c2 = c * c;
-    scale *= -TWO_PI;
-    bands[0] = scale / (1.0 + c);
-    bands[1] = scale * 0.5;
-    bands[2] = scale * (0.5 * c);
-#if ORDER > 3
-    bands[3] = scale * (0.625 * c2 - 0.125);
-#endif
-#if ORDER > 4
-    bands[4] = scale * (c * (0.875 * c2 - 0.375));
-#endif
-#if ORDER > 5
-    bands[5] = scale * (c2 * (1.3125 * c2 - 0.875) + 0.0625);
-#endif
-}
-#endif
 
-// Small caps that are taken up at once, so that the sums are read and written less often.
-const int TURNS = 2;
-
-// A point of a surface.
-struct Receiver {
-    vec3 place;
-    vec3 normal; // of length 1; with NORMALS
-};
-
-// What a sphere leaves one receiver: its logarithm, or its visibility less 1.
-void cap_term(uint kind, vec4 sphere, float share, Receiver receiver, vec4 polynomials[ORDER], out float term[COUNT])
+// Adds the logarithms of two caps of any size.
+void add_large(vec4 a, vec4 b, vec2 shares, Receiver receiver, inout float sum[COUNT])
 {
 #ifdef NORMALS
-    float above;
-    sphere = shadow_above(sphere, receiver.place, receiver.normal, above);
-    share *= above;
+    vec2 above;
+    a = shadow_above(a, receiver.place, receiver.normal, above.x);
+    b = shadow_above(b, receiver.place, receiver.normal, above.y);
+    shares *= above;
 #endif
-    vec4 cap = shadow_cap(sphere.xyz, sphere.w, receiver.place);
-    float bands[ORDER];
-#if EXPONENTIAL == 7
-    visibility_factors(cap.w, share * cap.w, bands);
-#else
-    if (kind == SMALL) {
-        small_factors(polynomials, cap.w, share * cap.w, bands);
-    } else {
-        large_factors(cap.w, share * cap.w, bands);
-    }
-#endif
-    sh_evaluate(cap.xyz, term);
-#define SCALED(i, l) term[i] *= bands[l];
-    EACH_BAND(SCALED)
+    vec4 first = shadow_cap(a.xyz, a.w, receiver.place);
+    vec4 second = shadow_cap(b.xyz, b.w, receiver.place);
+    float of_first[ORDER];
+    float of_second[ORDER];
+    large_factors(first.w, shares.x * first.w, of_first);
+    large_factors(second.w, shares.y * second.w, of_second);
+    vec2 bands[ORDER];
+    for (int l = 0; l < ORDER; ++l) { bands[l] = vec2(of_first[l], of_second[l]); }
+    sums_add(bands, vec2(first.x, second.x), vec2(first.y, second.y), vec2(first.z, second.z), sum);
 }
 
-// Adds the logarithms of the chosen nodes of a kind, or multiplies by their visibility; how many there are.
+// Adds the logarithms of the chosen nodes of a kind; how many there are.
 uint accumulate_kind(uint kind, Receiver receivers[RECEIVERS], inout float sums[RECEIVERS][COUNT])
 {
     uint here = 0u;
     vec4 polynomials[ORDER];
-#if EXPONENTIAL < 7
     // Read once: to some drivers a uniform costs as much as a sphere.
     for (int l = 0; l < ORDER; ++l) { polynomials[l] = factors.small[l]; }
-#endif
-    for (uint word = 0u; word < words[kind]; ++word) {
+    uint word = 0u;
+    uint at = 0u;
+    do {
         uint bits = chosen[kind][word];
         here += uint(bitCount(bits));
-        while (bits != 0u) {
-            int turns = kind == SMALL && EXPONENTIAL < 7 ? TURNS : 1;
+        do {
             vec4 taken[TURNS];
-            float shares[TURNS];
-            for (int turn = 0; turn < turns; ++turn) {
-                // Past the last one: any, of no share.
-                uint at = 32u * word + (uint(findLSB(bits)) & 31u);
+            vec2 shares;
+            for (int turn = 0; turn < TURNS; ++turn) {
+                // Past the last one: the last one, of no share.
+                bool there = bits != 0u;
+                at = there ? 32u * word + uint(findLSB(bits)) : at;
                 taken[turn] = spheres.values[at];
-                shares[turn] = bits != 0u ? nodes.values[at].x : 0.0;
-                if (kind == LARGE) { shares[turn] *= weights[at]; }
+                shares[turn] = there ? nodes.values[at].x : 0.0;
+                if (kind == LARGE) { shares[turn] *= there ? weights[at] : 0.0; }
                 bits &= bits - 1u;
             }
             for (int r = 0; r < RECEIVERS; ++r) {
-                float together[COUNT];
-                cap_term(kind, taken[0], shares[0], receivers[r], polynomials, together);
-#if EXPONENTIAL == 7
-                together[0] += ONE;
-                float product[COUNT];
-                sh_product(sums[r], together, product);
-                sums[r] = product;
-#else
-                for (int turn = 1; turn < turns; ++turn) {
-                    float term[COUNT];
-                    cap_term(kind, taken[turn], shares[turn], receivers[r], polynomials, term);
-                    EACH(i) { together[i] += term[i]; }
+                if (kind == SMALL) {
+                    add_small(taken[0], taken[1], shares, receivers[r], polynomials, sums[r]);
+                } else {
+                    add_large(taken[0], taken[1], shares, receivers[r], sums[r]);
                 }
-                EACH(i) { sums[r][i] += together[i]; }
-#endif
             }
-        }
-    }
+        } while (bits != 0u);
+        ++word;
+    } while (word < words[kind]);
     return here;
 }
 
-// The same of all kinds.
-uint accumulate(Receiver receivers[RECEIVERS], inout float sums[RECEIVERS][COUNT])
+// Sums of the logarithms of all chosen nodes; how many there are.
+uint accumulate(Receiver receivers[RECEIVERS], out float sums[RECEIVERS][COUNT])
 {
+    for (int r = 0; r < RECEIVERS; ++r) {
+        EACH(i) { sums[r][i] = 0.0; }
+    }
     uint here = accumulate_kind(SMALL, receivers, sums);
-#if EXPONENTIAL < 7
     here += accumulate_kind(LARGE, receivers, sums);
-#endif
+    for (int r = 0; r < RECEIVERS; ++r) { sums_finish(sums[r]); }
     return here;
 }
+#else
+#include "shadow/chained.glsl"
+#endif
 
 #endif

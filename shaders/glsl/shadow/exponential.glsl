@@ -90,16 +90,30 @@ vec2 eigenvalues(float mean, float norm)
 #define step_product sh_product
 #endif
 
+// Of the table: that of the half width, or the two that it lies between.
+struct Row {
+    uint upper;
+    float share;
+};
+
+float coefficient_of(Row row, uint power)
+{
+    return mix(SHADOW_TABLE(row.upper - 16u + power), SHADOW_TABLE(row.upper + power), row.share);
+}
+
 // By Horner's rule: the two highest powers, then a product for each lower one, then squarings; one loop, so that the product
 // stands in the program once. Without `row` coefficients are those of the series.
-void horner(float f[COUNT], float begin, uint degree, uint row, bool series, uint squarings, out float g[COUNT])
+void horner(float f[COUNT], float begin, uint degree, Row row, bool series, uint squarings, out float g[COUNT])
 {
-    float coefficient = series ? begin : begin * SHADOW_TABLE(row + degree);
+    float coefficient = series ? begin : begin * coefficient_of(row, degree);
     EACH(i) { g[i] = coefficient * f[i]; }
-    coefficient = series ? coefficient * float(degree) : begin * SHADOW_TABLE(row + degree - 1u);
+    coefficient = series ? coefficient * float(degree) : begin * coefficient_of(row, degree - 1u);
     g[0] += coefficient * ONE;
     uint steps = degree - 1u;
-    for (uint at = 0u; at < steps + squarings; ++at) {
+    uint products = steps + squarings;
+    if (products == 0u) { return; }
+    uint at = 0u;
+    do {
         bool squaring = at >= steps;
         float left[COUNT];
         float h[COUNT];
@@ -108,10 +122,11 @@ void horner(float f[COUNT], float begin, uint degree, uint row, bool series, uin
         g = h;
         if (!squaring) {
             uint power = steps - 1u - at;
-            coefficient = series ? coefficient * float(power + 1u) : begin * SHADOW_TABLE(row + power);
+            coefficient = series ? coefficient * float(power + 1u) : begin * coefficient_of(row, power);
             g[0] += coefficient * ONE;
         }
-    }
+        ++at;
+    } while (at < products);
 }
 
 // The logarithm of how much more the square of a function holds than the function; none from 0 to 1 has any. Noise about 0
@@ -145,12 +160,13 @@ void exponential(inout float f[COUNT], Exponential how)
     for (uint attempt = 0u; attempt < 2u; ++attempt) {
         float t[COUNT] = f;
         uint degree = how.degree;
-        uint row = 0u;
+        Row row = Row(16u, 1.0);
         if (!series) {
             vec2 interval = eigenvalues(scale * mean, scale * norm);
-            float place = clamp(ceil(8.0 * log2(max(interval.y, 1e-30) / 16.0)) + 112.0, 0.0, 112.0);
-            row = 16u * uint(place);
-            degree = uint(SHADOW_TABLE(row + 15u));
+            float place = clamp(8.0 * log2(max(interval.y, 1e-30) / 16.0) + 112.0, 0.0, 112.0);
+            float upper = max(ceil(place), 1.0);
+            row = Row(16u * uint(upper), place - upper + 1.0);
+            degree = uint(SHADOW_TABLE(row.upper + 15u));
             float inverse = exp2((112.0 - place) / 8.0) / 16.0;
             EACH(i) { t[i] *= scale * inverse; }
             t[0] -= (interval.x * inverse - 1.0) * ONE;
@@ -179,12 +195,16 @@ void exponential(inout float f[COUNT], Exponential how)
     f[0] += a * ONE;
     // The square of the series first, then those that undo the scaling: one loop, as above.
     uint steps = how.degree > 1u ? 1u : 0u;
-    for (uint at = 0u; at < steps + squarings; ++at) {
+    uint squares = steps + squarings;
+    if (squares == 0u) { return; }
+    uint at = 0u;
+    do {
         bool series = at < steps;
         EACH(i) { g[i] = series ? g[i] : f[i]; }
         sh_square(g, h);
         EACH(i) { f[i] = series ? f[i] + 0.5 * mean * h[i] : h[i]; }
-    }
+        ++at;
+    } while (at < squares);
 }
 #elif EXPONENTIAL == 3
 void exponential(inout float f[COUNT], Exponential how)

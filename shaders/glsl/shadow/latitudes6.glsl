@@ -125,7 +125,10 @@ void sh_product_by_latitudes(float f[36], float g[36], out float h[36])
     h[33] = 0.0;
     h[34] = 0.0;
     h[35] = 0.0;
-    for (uint pair = 0u; pair < 4u; ++pair) {
+    // Asked for at its end: a driver whose lanes all take every branch runs through a loop that ends at its head
+    // once more.
+    uint pair = 0u;
+    do {
         float z = pair == 0u ? 0.18343464 : pair == 1u ? 0.5255324 : pair == 2u ? 0.7966665 : 0.96028984;
         float weight = pair == 0u ? 0.36268377 : pair == 1u ? 0.31370664 : pair == 2u ? 0.22238104 : 0.101228535;
         float q[36];
@@ -158,5 +161,6 @@ void sh_product_by_latitudes(float f[36], float g[36], out float h[36])
         h[24] += even * q[24]; h[34] += odd * q[34];
         even = 3.1415927 * weight * (upper[10] + lower[10]); odd = 3.1415927 * weight * (upper[10] - lower[10]);
         h[35] += even * q[35];
-    }
+        ++pair;
+    } while (pair < 4u);
 }

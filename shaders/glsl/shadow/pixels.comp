@@ -3,13 +3,14 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // What white diffuse surfaces reflect of the light that spheres leave them, a receiver a pixel: as visibility.comp, and the
 // visibility dotted with the products of light and cosine, `L_H(N) . g` (Sun 2008, section 5.2.4), and a disc of light
-// beside. A workgroup is a tile of 8 times 8 pixels, which chooses its nodes once.
+// beside; or which share that is of what they reflect without spheres. A workgroup is a tile of 8 times 8 pixels, which
+// chooses its nodes once.
 //
 // The includer's defines: ORDER; EXPONENTIAL 0; NORMALS.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Space of the spheres; w 0 where there is no surface.
+// Space of the spheres; w 0 where there is no surface. Nor is there one where a number of it or of the normal is not finite.
 layout(set = 0, binding = 0) uniform texture2D positions;
 // Of any length but 0.
 layout(set = 0, binding = 1) uniform texture2D normals;
@@ -29,6 +30,9 @@ layout(std140, set = 0, binding = 9) uniform Products {
     vec4 values[COLUMNS * ORDER * ORDER];
 } products;
 
+const uint CLAMPED = 1u; // visibility is made one that there can be
+const uint SHARE = 2u;   // the picture is the share of light that spheres leave, 1 where there is no surface
+
 layout(push_constant) uniform Settings {
     uvec2 size;
     uint count;  // nodes
@@ -43,6 +47,7 @@ layout(push_constant) uniform Settings {
 
 #define SHADOW_TABLE_END 1.0
 #define RECEIVERS 1
+#include "common/sh_basis.glsl"
 #include "shadow/blockers.glsl"
 
 const float PI = 3.14159265358979;
@@ -99,19 +104,29 @@ float disc_seen(vec3 place, vec3 normal)
     return seen;
 }
 
-vec3 reflected(vec3 normal, float g[COUNT])
+// What surfaces reflect of the light of the products; and what they would if all of it were seen.
+vec3 reflected(vec3 normal, float g[COUNT], out vec3 open)
 {
     float basis[COUNT];
     sh_evaluate(normal, basis);
     vec3 sum = vec3(0.0);
+    open = vec3(0.0);
     for (uint at = 0u; at < COLUMNS; ++at) {
         // Band 3 has no column.
         uint k = at < 9u ? at : at + 7u;
         vec3 product = vec3(0.0);
         EACH(i) { product += g[i] * products.values[at * uint(COUNT) + uint(i)].rgb; }
         sum += basis[k] * product;
+        open += basis[k] * (ONE * products.values[at * uint(COUNT)].rgb);
     }
-    return sum;
+    open = max(open, vec3(0.0));
+    return max(sum, vec3(0.0));
+}
+
+// The share of light that is left, 1 where there is none.
+vec3 share_of(vec3 light, vec3 open)
+{
+    return mix(light / max(open, vec3(1e-20)), vec3(1.0), equal(open, vec3(0.0)));
 }
 
 void main()
@@ -120,31 +135,35 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 inside = min(pixel, ivec2(settings.size) - 1);
     vec4 surface = texelFetch(positions, inside, 0);
-    bool there = surface.w > 0.0 && pixel == inside;
-    vec3 place = there ? surface.xyz : vec3(0.0);
     vec3 normal = texelFetch(normals, inside, 0).xyz;
-    normal *= inversesqrt(max(dot(normal, normal), 1e-30));
+    bool there = pixel == inside && finite(surface) && finite(vec4(normal, 0.0)) && surface.w > 0.0;
+    vec3 place = there ? surface.xyz : vec3(0.0);
+    normal = there ? normal * inversesqrt(max(dot(normal, normal), 1e-30)) : vec3(0.0, 0.0, 1.0);
     choose(lane, tile_bound(lane, place, there), settings.reach, settings.cut);
     Receiver receivers[1];
     receivers[0] = Receiver(place, normal);
     float sums[1][COUNT];
-    EACH(i) { sums[0][i] = 0.0; }
     uint here = accumulate(receivers, sums);
     float g[COUNT] = sums[0];
     if (here == 0u) {
         g[0] = ONE;
     } else {
         exponential(g, Exponential(0u, 1e30, 0u));
-        if (settings.flags != 0u) { clamp_visibility(g); }
+        if ((settings.flags & CLAMPED) != 0u) { clamp_visibility(g); }
     }
     EACH(i) {
         float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
         g[i] /= 1.0 + settings.window * band * band;
     }
-    vec3 light = max(reflected(normal, g), vec3(0.0));
+    vec3 open;
+    vec3 light = reflected(normal, g, open);
     float cosine = dot(normal, settings.disc.xyz);
     if (settings.disc_radius > 0.0 && cosine > 0.0) {
-        light += cosine * disc_seen(place, normal) / PI * settings.irradiance.rgb;
+        vec3 of_disc = cosine / PI * settings.irradiance.rgb;
+        light += disc_seen(place, normal) * of_disc;
+        open += of_disc;
     }
-    if (pixel == inside) { imageStore(picture, pixel, there ? vec4(light, g[0] / ONE) : vec4(0.0)); }
+    bool share = (settings.flags & SHARE) != 0u;
+    vec4 shown = vec4(share ? share_of(light, open) : light, g[0] / ONE);
+    if (pixel == inside) { imageStore(picture, pixel, there ? shown : vec4(share ? 1.0 : 0.0)); }
 }

@@ -7,8 +7,8 @@
 // The includer's defines: ORDER; EXPONENTIAL as in exponential.glsl, 7: the product of the visibilities one after the other,
 // the rival; NORMALS: receivers lie on surfaces and see nothing below their tangent planes.
 
-// A lane holds two receivers, for which it reads a sphere once; one of those that take long each.
-#if EXPONENTIAL == 7 || ORDER > 4
+// A lane holds two receivers, for which it reads a sphere once; the rival one, whose products take longer.
+#if EXPONENTIAL == 7
 #define RECEIVERS 1
 #else
 #define RECEIVERS 2
@@ -77,12 +77,6 @@ vec3 position(uint receiver)
     return vec3(positions.values[at], positions.values[at + 1u], positions.values[at + 2u]);
 }
 
-// By bits: comparisons of what is no number are whatever a driver makes of them.
-bool finite(vec3 v)
-{
-    return all(notEqual(floatBitsToUint(v) & 0x7f800000u, uvec3(0x7f800000u)));
-}
-
 // The receiver of a number; at the origin where nobody is there, or where it is not finite.
 Receiver read(uint number, out bool there)
 {
@@ -91,11 +85,11 @@ Receiver read(uint number, out bool there)
     if (there) {
         Receiver raw = receiver;
         raw.place = position(number);
-        there = finite(raw.place);
+        there = finite(vec4(raw.place, 0.0));
 #ifdef NORMALS
         uint at = 3u * number;
         raw.normal = vec3(normals.values[at], normals.values[at + 1u], normals.values[at + 2u]);
-        there = there && finite(raw.normal);
+        there = there && finite(vec4(raw.normal, 0.0));
         raw.normal *= inversesqrt(max(dot(raw.normal, raw.normal), 1e-30));
 #endif
         if (there) { receiver = raw; }
@@ -164,29 +158,31 @@ void main()
         receivers[r] = read(numbers[r], there[r]);
         low = there[r] ? min(low, receivers[r].place) : low;
         high = there[r] ? max(high, receivers[r].place) : high;
-        EACH(i) { sums[r][i] = continued && there[r] ? visibility.values[numbers[r] * COUNT + i] : 0.0; }
-#if EXPONENTIAL == 7
-        sums[r][0] = ONE;
-#endif
     }
     choose(lane, cluster_bound(lane, low, high), settings.reach, settings.cut);
     uint chosen_here = accumulate(receivers, sums);
     uint before = continued ? records.values[cluster].x : 0u;
     float window = logarithm ? 0.0 : settings.window;
     // A loop that is not unrolled, so that the exponential stands in the program once.
-    for (uint r = 0u; r < uint(RECEIVERS); ++r) {
+    uint r = 0u;
+    do {
         bool first = r == 0u;
         uint number = first ? numbers[0] : numbers[RECEIVERS - 1];
         bool blocked = first ? there[0] : there[RECEIVERS - 1];
         float sum[COUNT];
         EACH(i) { sum[i] = !blocked ? 0.0 : first ? sums[0][i] : sums[RECEIVERS - 1][i]; }
-        if (!logarithm && see(sum, !blocked || before + chosen_here == 0u)) { atomicAdd(clamped_here, 1u); }
-        if (number == NOBODY) { continue; }
-        EACH(i) {
-            float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
-            visibility.values[number * COUNT + i] = sum[i] / (1.0 + window * band * band);
+        if (continued && blocked) {
+            EACH(i) { sum[i] += visibility.values[number * COUNT + i]; }
         }
-    }
+        if (!logarithm && see(sum, !blocked || before + chosen_here == 0u)) { atomicAdd(clamped_here, 1u); }
+        if (number != NOBODY) {
+            EACH(i) {
+                float band = i < 1 ? 0.0 : i < 4 ? 2.0 : i < 9 ? 6.0 : i < 16 ? 12.0 : i < 25 ? 20.0 : 30.0; // l (l + 1)
+                visibility.values[number * COUNT + i] = sum[i] / (1.0 + window * band * band);
+            }
+        }
+        ++r;
+    } while (r < uint(RECEIVERS));
     barrier();
     if (lane == 0u) { records.values[cluster] = uvec2(before + chosen_here, clamped_here); }
 }

@@ -49,16 +49,17 @@ pub fn source(order: usize) -> Result<String, MathError> {
     let _ = write!(
         text,
         "\nvoid sh_product_by_latitudes(float f[{count}], float g[{count}], out float h[{count}])\n{{\n{}    \
-         for (uint pair = 0u; pair < {}u; ++pair) {{\n        float z = {};\n        float weight = {};\n        \
+         // Asked for at its end: a driver whose lanes all take every branch runs through a loop that ends at its head\n    \
+         // once more.\n    uint pair = 0u;\n    do {{\n        float z = {};\n        float weight = {};\n        \
          float q[{count}];\n        sh_evaluate(vec3(sqrt(1.0 - z * z), 0.0, z), q);\n        \
          float f_upper[{terms}], f_lower[{terms}], g_upper[{terms}], g_lower[{terms}], upper[{terms}], lower[{terms}];\n        \
          latitude_sums(f, q, f_upper, f_lower);\n        latitude_sums(g, q, g_upper, g_lower);\n        \
-         circle_product(f_upper, g_upper, upper);\n        circle_product(f_lower, g_lower, lower);\n{}    }}\n}}\n",
+         circle_product(f_upper, g_upper, upper);\n        circle_product(f_lower, g_lower, lower);\n{}        ++pair;\n    }} while (pair < {}u);\n}}\n",
         (0..count).map(|i| format!("    h[{i}] = 0.0;\n")).collect::<String>(),
-        north.len(),
         select(|row| row.0),
         select(|row| row.1),
-        spread(order)
+        spread(order),
+        north.len()
     );
     Ok(text)
 }

@@ -1,13 +1,13 @@
-//! The pass per pixel: against f64, and the same bits by both roads.
+//! The pass per pixel: against f64, the same bits by both roads, shares of light, and broken pixels.
 
 use std::sync::{Arc, Mutex};
 
-use airglow_gpu::ash::vk::{Format, ImageUsageFlags};
-use airglow_gpu::{Execution, GpuError, Image, Imports, Label, Location, Readback, Recorder};
-use airglow_graph::{Access, BufferDesc, Graph, ImageDesc, PassKind, State};
+use airglow_gpu::{Execution, GpuError, Imports, Readback, Recorder};
+use airglow_graph::{Access, Graph, PassKind};
 use airglow_shadow::reference::{Reference, caps};
 use airglow_shadow::{
-    Blockers, Disc, Exponential, PixelLight, PixelShadow, PixelViews, Products, Settings, Sphere,
+    Bench, Blockers, Disc, Exponential, PixelLight, PixelLights, PixelPicture, PixelShadow, Products,
+    Settings, Sphere,
 };
 use airglow_tests::device::{Fixture, fixture_with};
 use glam::{DMat4, DVec3};
@@ -19,6 +19,8 @@ const SPHERES: [Sphere; 2] = [
     Sphere { center: DVec3::new(-1.0, 1.4, -0.8), radius: 0.9 },
 ];
 
+type Texels = Vec<[f32; 4]>;
+
 fn light(order: usize) -> PixelLight {
     let mut light = vec![[0.0; 3]; order * order];
     light[0] = [2.0, 1.5, 1.0];
@@ -26,69 +28,43 @@ fn light(order: usize) -> PixelLight {
     light[6] = [0.1, -0.2, 0.3];
     let direction = DVec3::new(0.3, 0.9, 0.2).normalize();
     let disc = Disc { direction, angular_radius: 0.05, irradiance: [3.0, 2.5, 2.0] };
-    PixelLight { products: Products::new(order, &light).unwrap(), disc: Some(disc) }
+    PixelLight {
+        products: Products::new(order, &light).unwrap(),
+        disc: Some(disc),
+        picture: PixelPicture::Light,
+    }
 }
 
 /// A square of ground without its first pixel, and its normals.
-fn texels() -> [Vec<[f32; 4]>; 2] {
+fn texels() -> [Texels; 2] {
     let place =
         |at: u32| [(at % SIDE) as f32 * 0.2 - 2.0, 0.0, (at / SIDE) as f32 * 0.2 - 2.0, at.min(1) as f32];
     [(0..SIDE * SIDE).map(place).collect(), vec![[0.0, 2.0, 0.0, 0.0]; (SIDE * SIDE) as usize]]
 }
 
-fn image(fixture: &Fixture, texels: &[[f32; 4]]) -> Image {
-    let context = fixture.context();
-    let usage = ImageUsageFlags::TRANSFER_DST | ImageUsageFlags::SAMPLED;
-    let desc = ImageDesc { usage, ..ImageDesc::new_2d(SIDE, SIDE, Format::R32G32B32A32_SFLOAT) };
-    let image = context.create_image(Label::new("host", "surface"), &desc).unwrap();
-    let desc = BufferDesc { size: size_of_val(texels) as u64, usage: Access::TransferSource.buffer_usage() };
-    let staging = context.create_buffer(Label::new("host", "texels"), &desc, Location::Upload).unwrap();
-    staging.write(0, texels).unwrap();
-    let record = |recorder: &mut Recorder<'_>| {
-        recorder.transition(&image, State::UNDEFINED, Access::TransferDestination)?;
-        recorder.copy_buffer_to_image(&staging, &image.full_view()?)?;
-        recorder.transition(&image, Access::TransferDestination, Access::ComputeSampled)
+/// What `frames` makes of a bench on the fixture.
+fn on<T>(fixture: &Fixture, frames: impl FnOnce(Bench<'_>) -> T) -> T {
+    let run = |record: &mut dyn FnMut(&mut Recorder<'_>) -> Result<(), GpuError>| {
+        fixture.device().run(fixture.context(), |recorder| record(recorder))
     };
-    fixture.device().run(context, record).unwrap();
-    image
+    frames(Bench { context: fixture.context(), run: &run })
 }
 
-fn without_graph(
+/// Without a graph.
+fn alone(
     fixture: &Fixture,
     shadow: &PixelShadow,
     blockers: &Blockers,
     light: &PixelLight,
-) -> Vec<[f32; 4]> {
-    let context = fixture.context();
-    let [positions, normals] = texels().map(|texels| image(fixture, &texels));
-    let usage = ImageUsageFlags::STORAGE | ImageUsageFlags::TRANSFER_SRC;
-    let desc = ImageDesc { usage, ..ImageDesc::new_2d(SIDE, SIDE, PixelShadow::FORMAT) };
-    let picture = context.create_image(Label::new("host", "picture"), &desc).unwrap();
-    let views = PixelViews {
-        positions: positions.full_view().unwrap(),
-        normals: normals.full_view().unwrap(),
-        picture: picture.full_view().unwrap(),
-    };
-    let mut copy = None;
-    let record = |recorder: &mut Recorder<'_>| {
-        recorder.transition(&picture, State::UNDEFINED, Access::ComputeStorageWrite)?;
-        shadow.record(recorder, [SIDE, SIDE], blockers, light, &views)?;
-        recorder.transition(&picture, Access::ComputeStorageWrite, Access::TransferSource)?;
-        copy = Some(recorder.read_back_image(&views.picture)?);
-        Ok(())
-    };
-    fixture.device().run(context, record).unwrap();
-    copy.unwrap().texels().unwrap()
+    [positions, normals]: &[Texels; 2],
+) -> Texels {
+    let size = [SIDE, SIDE];
+    on(fixture, |bench| bench.pixels(shadow, size, [positions, normals], blockers, light)).unwrap()
 }
 
-fn with_graph(
-    fixture: &Fixture,
-    shadow: &PixelShadow,
-    blockers: &Blockers,
-    light: &PixelLight,
-) -> Vec<[f32; 4]> {
+fn with_graph(fixture: &Fixture, shadow: &PixelShadow, blockers: &Blockers, light: &PixelLight) -> Texels {
     let context = fixture.context();
-    let images = texels().map(|texels| image(fixture, &texels));
+    let images = texels().map(|texels| on(fixture, |bench| bench.image([SIDE, SIDE], &texels)).unwrap());
     let mut graph = Graph::new();
     let mut imports = Imports::new();
     let handles = [0, 1].map(|at| {
@@ -97,7 +73,10 @@ fn with_graph(
         imports.image(&handle, &images[at]);
         handle
     });
-    let picture = shadow.add(&mut graph, [SIDE, SIDE], blockers, light, handles).unwrap();
+    let lights = PixelLights::new(PixelLight { disc: None, ..light.clone() });
+    let picture = shadow.add(&mut graph, [SIDE, SIDE], blockers, &lights, handles).unwrap();
+    // What it reads is set before it is recorded.
+    lights.set(light.clone());
     let slot: Arc<Mutex<Option<Readback>>> = Arc::default();
     let filled = Arc::clone(&slot);
     let mut read = graph.pass("read back", PassKind::Transfer);
@@ -124,7 +103,7 @@ fn pixels_agree_with_the_reference_by_both_roads() {
         let shadow = PixelShadow::new(fixture.context(), settings).unwrap();
         let (blockers, light) = (Blockers::default(), light(order));
         blockers.set(&SPHERES, DMat4::IDENTITY).unwrap();
-        let found = without_graph(&fixture, &shadow, &blockers, &light);
+        let found = alone(&fixture, &shadow, &blockers, &light, &texels());
         assert_eq!(found, with_graph(&fixture, &shadow, &blockers, &light), "order {order}");
         assert_eq!(found[0], [0.0; 4], "no surface");
         let (reference, disc) = (Reference::new(order).unwrap(), light.disc.unwrap());
@@ -142,4 +121,50 @@ fn pixels_agree_with_the_reference_by_both_roads() {
     }
     let other = Settings { exponential: Exponential::OptimalLinear, ..Default::default() };
     assert!(PixelShadow::new(fixture.context(), other).is_err());
+}
+
+#[test]
+fn shares_are_what_is_left_of_the_light_and_one_where_nothing_blocks() {
+    let fixture = fixture_with(&PixelShadow::requirements());
+    let settings = Settings { reach: 0.0, ..Default::default() };
+    let shadow = PixelShadow::new(fixture.context(), settings).unwrap();
+    let (blockers, whole) = (Blockers::default(), light(settings.order));
+    let share = PixelLight { picture: PixelPicture::Share, ..whole.clone() };
+    let pixels = |light: &PixelLight| alone(&fixture, &shadow, &blockers, light, &texels());
+    // A point hides nothing.
+    blockers.set(&[Sphere { radius: 0.0, ..SPHERES[0] }], DMat4::IDENTITY).unwrap();
+    let open = pixels(&whole);
+    assert!(pixels(&share).iter().all(|share| *share == [1.0; 4]), "nothing blocks, or there is no surface");
+    blockers.set(&SPHERES, DMat4::IDENTITY).unwrap();
+    let (left, shares) = (pixels(&whole), pixels(&share));
+    for (at, ((left, open), share)) in left.iter().zip(&open).zip(&shares).enumerate().skip(1) {
+        for c in 0..3 {
+            let error = (left[c] - share[c] * open[c]).abs();
+            assert!(error < 3e-3, "pixel {at}: {left:?} is not {share:?} of {open:?}");
+        }
+    }
+    let darkest = shares.iter().fold(1.0_f32, |least, share| least.min(share[0]));
+    assert!(darkest < 0.5, "the spheres hide the disc and some of the sky: {darkest}");
+}
+
+#[test]
+fn a_broken_pixel_is_no_surface_and_its_neighbours_stay() {
+    let fixture = fixture_with(&PixelShadow::requirements());
+    let settings = Settings { reach: 0.0, ..Default::default() };
+    let shadow = PixelShadow::new(fixture.context(), settings).unwrap();
+    let (blockers, light) = (Blockers::default(), light(settings.order));
+    blockers.set(&SPHERES, DMat4::IDENTITY).unwrap();
+    let whole = alone(&fixture, &shadow, &blockers, &light, &texels());
+    let mut broken = texels();
+    let places = [(0, 25, f32::NAN), (0, 130, f32::INFINITY), (0, 203, f32::NEG_INFINITY), (1, 77, f32::NAN)];
+    for (image, pixel, value) in places {
+        broken[image][pixel][pixel % 3] = value;
+    }
+    // Of a position its w, too.
+    broken[0][350][3] = f32::NAN;
+    let found = alone(&fixture, &shadow, &blockers, &light, &broken);
+    for (at, (found, whole)) in found.iter().zip(&whole).enumerate() {
+        let gone = at == 350 || places.iter().any(|(_, pixel, _)| *pixel == at);
+        assert_eq!(found, if gone { &[0.0; 4] } else { whole }, "pixel {at}");
+    }
 }
