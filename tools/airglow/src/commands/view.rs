@@ -79,6 +79,17 @@ struct Stat {
     passes: Vec<PassStat>,
     /// Where parts of the panel were in the window, pixels: left, top, right and bottom. For scripts that play a user.
     panel: Places,
+    /// Where the camera was at last.
+    camera: CameraStat,
+}
+
+/// A camera in the world.
+#[derive(Serialize)]
+struct CameraStat {
+    /// Metres.
+    position: [f32; 3],
+    /// Where it looks, of length 1.
+    direction: [f32; 3],
 }
 
 /// Runs the command.
@@ -133,13 +144,17 @@ fn settings(arguments: &Arguments) -> Settings {
 }
 
 fn stat(machine: Machine, shown: Shown) -> Stat {
-    let Shown { frames, seconds, timing, places } = shown;
+    let Shown { frames, seconds, timing, places, camera } = shown;
     Stat {
         machine,
         frames,
         frames_per_second: (frames > 1).then(|| f64::from(frames - 1) / seconds),
         passes: timed(timing.as_ref()),
         panel: places,
+        camera: CameraStat {
+            position: camera.position().to_array(),
+            direction: camera.direction().to_array(),
+        },
     }
 }
 

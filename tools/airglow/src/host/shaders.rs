@@ -20,6 +20,15 @@ pub fn replace(modules: Modules) -> Modules {
     std::mem::replace(&mut *replaced, modules)
 }
 
+/// The same beside those that do so already, which go on but for those of the same names.
+#[cfg(feature = "view")]
+pub fn replace_more(modules: Modules) -> Modules {
+    let mut replaced = REPLACED.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let before = replaced.clone();
+    replaced.extend(modules);
+    before
+}
+
 /// The words of a module, which are built in unless others stand in for them.
 #[cfg_attr(not(feature = "view"), expect(unused_variables, reason = "all are built in"))]
 fn words(name: &str, built_in: &[u8]) -> Vec<u32> {

@@ -8,6 +8,10 @@ use crate::failure::Outcome;
 
 /// The values that all knobs have in a scene, those that a wish does not turn as the preset says; `None` for passes that
 /// are not built in.
+#[cfg_attr(
+    not(any(feature = "fog", feature = "radiance", feature = "shadow")),
+    expect(unused_variables, reason = "no pass that has knobs of its own is built in")
+)]
 pub fn values(scene: &Scene, wish: &Wish) -> [Option<f64>; KNOBS.len()] {
     let mut values = [None; KNOBS.len()];
     values[wish::ORDER] = Some(f64::from(scene.quality.order));

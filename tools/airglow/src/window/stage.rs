@@ -1,6 +1,6 @@
 //! The scene in the window, and what is made anew of its passes when something is asked of them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use airglow_scene::Scene;
@@ -109,8 +109,17 @@ impl<'d> Stage<'d> {
         self.renderer.resize(size)
     }
 
+    /// Loads what a file holds that was dropped onto the window, a scene or an environment.
+    ///
+    /// # Errors
+    /// It is neither, in words for the user.
+    pub fn take_file(&mut self, file: &Path) -> Result<(), String> {
+        self.load(Load::of_file(file)?);
+        Ok(())
+    }
+
     /// Loads another scene, or lights this one by another environment, beside the frames that go on.
-    pub fn load(&mut self, load: Load) {
+    fn load(&mut self, load: Load) {
         self.loading = Some(Loading::start(load, self.loaded.clone(), self.cache.clone(), &self.output));
     }
 
@@ -272,4 +281,55 @@ fn keep_places(from: &Scene, to: &mut Scene) {
         to.kind = from.kind;
     }
     to.nodes.clone_from(&from.nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::global::Global;
+    use crate::host::{device, lighting};
+    use crate::scene_options::SceneOptions;
+
+    /// Follows until what was dropped is shown, or is refused.
+    fn shown(stage: &mut Stage<'_>) -> Done {
+        loop {
+            let done = stage.follow(&mut Wish::default());
+            if done.status.is_some() {
+                return done;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn a_file_dropped_is_another_environment_or_another_scene() {
+        let asset = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets").join(name);
+        let global = Global { device: Some("cpu".to_owned()), validate: true, quiet: true, json: false };
+        let (output, cache) = (Output::new(&global), tempfile::tempdir().unwrap());
+        let mut options = SceneOptions::plain(&asset("mesh/ground.glb"), Some(&asset("env/sunrise_512.exr")));
+        options.cache = cache.path().to_owned();
+        let scene = options.load(&output).unwrap();
+        let source = Source::of_scene(&scene, false, &options.cache, &output).unwrap();
+        device::with(&global, &lighting::requirements(&source, &scene), |device| {
+            let mut stage =
+                Stage::new(device, scene, source, [32, 18], options.cache.clone(), output.clone())?;
+            stage.take_file(&asset("env/courtyard_512.exr")).unwrap();
+            let done = shown(&mut stage);
+            assert!(done.anew && done.other && done.status.is_some_and(|status| status.is_ok()));
+            let environment = stage.scene().environment.as_ref().unwrap();
+            assert!(environment.file.ends_with("courtyard_512.exr"), "{:?}", environment.file);
+            assert!(matches!(stage.source, Source::Relight(_)));
+
+            let ground = stage.scene().meshes[0].hash;
+            stage.take_file(&asset("mesh/spot.glb")).unwrap();
+            assert!(shown(&mut stage).status.is_some_and(|status| status.is_ok()));
+            assert!(stage.scene().meshes[0].hash != ground && stage.scene().environment.is_none());
+
+            let refused = stage.take_file(&asset("PROVENANCE.md")).unwrap_err();
+            assert!(refused.contains(".gltf"), "{refused}");
+            assert!(stage.busy().is_none(), "nothing is loaded");
+            Ok(())
+        })
+        .unwrap();
+    }
 }

@@ -19,7 +19,6 @@ use super::camera::Rig;
 use super::controls::{Action, Controls};
 use super::input::Input;
 use super::interface::{Interface, Places};
-use super::loading::Load;
 use super::reload::Watch;
 use super::shot::{self, Shot};
 use super::stage::Stage;
@@ -69,6 +68,8 @@ pub struct Shown {
     pub timing: Option<TimingSummary>,
     /// Where parts of the panel were.
     pub places: Places,
+    /// Where the camera was at last.
+    pub camera: Camera,
 }
 
 /// Draws to a window and listens to it.
@@ -151,7 +152,8 @@ impl<'d> Viewer<'d> {
             }
             None => None,
         };
-        Ok(Shown { frames: self.shown, seconds, timing, places: self.places })
+        let camera = self.rig.camera();
+        Ok(Shown { frames: self.shown, seconds, timing, places: self.places, camera })
     }
 
     /// Draws and shows one frame, unless the window has no pixels or changed just now.
@@ -252,27 +254,7 @@ impl<'d> Viewer<'d> {
     /// Makes anew what was asked for, and what shaders have changed.
     fn follow(&mut self) -> Outcome {
         if let Some(found) = self.show.watch.as_mut().and_then(Watch::look) {
-            let (before, told) = match found {
-                Ok(modules) => {
-                    let names: Vec<String> = modules.keys().cloned().collect();
-                    let mut all = shaders::replace(shaders::Modules::new());
-                    let before = all.clone();
-                    all.extend(modules);
-                    shaders::replace(all);
-                    (Some(before), Ok(format!("drawn with {}", names.join(", "))))
-                }
-                Err(why) => (None, Err(why)),
-            };
-            self.status = told;
-            if let Some(before) = before {
-                match self.stage.reload() {
-                    Ok(()) => self.compiled = None,
-                    Err(failure) => {
-                        shaders::replace(before);
-                        self.status = Err(format!("{failure}; the last good shaders stay"));
-                    }
-                }
-            }
+            self.status = found.and_then(|modules| self.draw_with(modules));
         }
         let done = self.stage.follow(&mut self.wish);
         if done.anew {
@@ -280,15 +262,37 @@ impl<'d> Viewer<'d> {
             self.samples = None;
         }
         if done.other {
-            self.show.camera = self.stage.scene().camera();
-            self.rig = Rig::new(self.show.camera.clone(), self.stage.middle());
-            let settings = Settings { window: None, ..self.settings };
-            let stated = self.stage.scene().exposure;
-            self.show.start.exposure = self.stage.renderer.exposure(None, stated, &settings)?;
+            self.start_over()?;
         }
         if let Some(status) = done.status {
             self.status = status;
         }
+        Ok(())
+    }
+
+    /// Draws with shaders that have changed, or goes on with those before; what to tell.
+    fn draw_with(&mut self, modules: shaders::Modules) -> Result<String, String> {
+        let names: Vec<String> = modules.keys().cloned().collect();
+        let before = shaders::replace_more(modules);
+        match self.stage.reload() {
+            Ok(()) => {
+                self.compiled = None;
+                Ok(format!("drawn with {}", names.join(", ")))
+            }
+            Err(failure) => {
+                shaders::replace(before);
+                Err(format!("{failure}; the last good shaders stay"))
+            }
+        }
+    }
+
+    /// Looks at another scene as it says.
+    fn start_over(&mut self) -> Outcome {
+        self.show.camera = self.stage.scene().camera();
+        self.rig = Rig::new(self.show.camera.clone(), self.stage.middle());
+        let settings = Settings { window: None, ..self.settings };
+        let stated = self.stage.scene().exposure;
+        self.show.start.exposure = self.stage.renderer.exposure(None, stated, &settings)?;
         Ok(())
     }
 
@@ -364,10 +368,11 @@ impl ApplicationHandler for Viewer<'_> {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => event_loop.exit(),
             WindowEvent::Resized(_) => self.stale = true,
             WindowEvent::Occluded(hidden) => self.hidden = hidden,
-            WindowEvent::DroppedFile(ref file) => match Load::of_file(file) {
-                Ok(load) => self.stage.load(load),
-                Err(why) => self.status = Err(why),
-            },
+            WindowEvent::DroppedFile(ref file) => {
+                if let Err(why) = self.stage.take_file(file) {
+                    self.status = Err(why);
+                }
+            }
             WindowEvent::RedrawRequested if !event_loop.exiting() => {
                 let outcome = self.draw();
                 self.unless_failed(event_loop, outcome);
