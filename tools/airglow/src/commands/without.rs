@@ -44,10 +44,14 @@ impl Without {
 
     /// What the passes that stay need of a scene.
     #[cfg_attr(
-        not(any(feature = "shadow", feature = "radiance", feature = "normals")),
+        not(any(feature = "fog", feature = "shadow", feature = "radiance", feature = "normals")),
         expect(unused_mut, reason = "the passes that stay need all of it")
     )]
     pub fn scene(&self, mut scene: Scene) -> Scene {
+        #[cfg(feature = "fog")]
+        if self.has(PassName::Fog) {
+            scene.medium = None;
+        }
         #[cfg(feature = "shadow")]
         if self.has(PassName::Shadow) {
             scene = shadow::without(scene);
@@ -65,8 +69,8 @@ impl Without {
 
     /// Has plans say that it was the host who left passes out of `whole`.
     pub fn say(&self, renderer: &mut Renderer<'_>, whole: &Scene) {
-        let mut say = |pass: PassName, what: &str, bytes: u64| {
-            if self.has(pass) && bytes > 0 {
+        let mut say = |pass: PassName, what: &str, there: bool, bytes: u64| {
+            if self.has(pass) && there {
                 renderer.say_left_out(LeftOut {
                     what: what.to_owned(),
                     why: format!("the host was asked to leave it out (--without {what})"),
@@ -76,11 +80,13 @@ impl Without {
                 });
             }
         };
+        #[cfg(feature = "fog")]
+        say(PassName::Fog, "fog", whole.medium.is_some(), 0);
         #[cfg(feature = "radiance")]
-        say(PassName::Radiance, "radiance", near::bytes(whole));
+        say(PassName::Radiance, "radiance", near::bytes(whole) > 0, near::bytes(whole));
         #[cfg(feature = "normals")]
-        say(PassName::Normals, "normals", mapped::bytes(whole));
-        #[cfg(not(any(feature = "radiance", feature = "normals")))]
+        say(PassName::Normals, "normals", mapped::bytes(whole) > 0, mapped::bytes(whole));
+        #[cfg(not(any(feature = "fog", feature = "radiance", feature = "normals")))]
         let _ = (&mut say, whole);
     }
 }

@@ -46,7 +46,9 @@ pub fn add(
             return Ok(Vec::new());
         }
         (None, _) => {
-            graph.leave_out(no_medium());
+            if !renderer.says_left_out("fog") {
+                graph.leave_out(no_medium());
+            }
             return Ok(Vec::new());
         }
     };

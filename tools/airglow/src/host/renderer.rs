@@ -219,6 +219,12 @@ impl<'d> Renderer<'d> {
         self.unread.push(record);
     }
 
+    /// Whether plans say so of `what` already.
+    #[cfg(feature = "fog")]
+    pub(super) fn says_left_out(&self, what: &str) -> bool {
+        self.unread.iter().any(|record| record.what == what)
+    }
+
     /// What a plan says of the time that leaving the pass out saves, seconds.
     pub fn say_relight_takes(&mut self, seconds: Option<f64>) {
         self.relight_seconds = seconds;
