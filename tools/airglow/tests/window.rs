@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use glam::{Quat, Vec3};
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{
     BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConfigureWindowAux, ConnectionExt,
@@ -23,6 +24,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Key codes of the keyboard that Xvfb has.
 const ESCAPE: u8 = 9;
 const R: u8 = 27;
+const W: u8 = 25;
+const V: u8 = 55;
 const HOME: u8 = 110;
 const P: u8 = 33;
 
@@ -123,6 +126,17 @@ impl User {
         let image = self.connection.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0);
         let data = image.unwrap().reply().unwrap().data;
         data.as_chunks::<4>().0.iter().map(|&[blue, green, red, _]| [red, green, blue]).collect()
+    }
+
+    /// What `look` sees once that is something, and stands still.
+    fn still(&mut self, look: impl Fn(&Self) -> Vec<[u8; 3]>) -> Vec<[u8; 3]> {
+        let mut before = look(self);
+        self.wait("the picture stands still", |user| {
+            std::thread::sleep(user.frames.max(Duration::from_millis(100)));
+            let now = look(user);
+            std::mem::replace(&mut before, now.clone()) == now && now.iter().any(|texel| *texel != [0; 3])
+        });
+        before
     }
 
     fn wait_for_picture(&mut self, what: &str, picture: &Picture) {
@@ -269,9 +283,37 @@ fn the_window_shows_what_render_draws_and_follows_its_user() {
     user.connection.map_window(user.window).unwrap().check().unwrap();
     user.wait_for_picture("the window is back", &larger);
 
+    user.play(MOTION_NOTIFY_EVENT, 0, 200, 150);
+    user.play(BUTTON_PRESS_EVENT, 1, 0, 0);
+    user.play(MOTION_NOTIFY_EVENT, 0, 250, 140);
+    user.play(BUTTON_RELEASE_EVENT, 1, 0, 0);
+    user.wait("the camera goes around", |user| user.pixels(larger.size) != larger.pixels);
+    let around = user.still(|user| user.pixels(larger.size));
+    user.press(V);
+    user.play(KEY_PRESS_EVENT, W, 0, 0);
+    user.wait("the camera flies", |user| user.pixels(larger.size) != around);
+    user.play(KEY_RELEASE_EVENT, W, 0, 0);
+
     user.press(ESCAPE);
     let shown = user.end();
     assert!(shown["frames"].as_u64().unwrap() >= 5, "{shown}");
+    check_flight(&shown["camera"], [50.0, -10.0]);
+}
+
+/// The camera went around the scene as the mouse was dragged by so many pixels, 0.008 radians each, then ahead.
+fn check_flight(camera: &serde_json::Value, [right, down]: [f32; 2]) {
+    let scene = airglow_scene::load(&scene()).unwrap();
+    let (home, middle) = (scene.camera(), Vec3::from(scene.bounding_sphere().unwrap().center));
+    let vector = |key: &str| Vec3::from(serde_json::from_value::<[f32; 3]>(camera[key].clone()).unwrap());
+    let side = home.transform.x_axis.truncate().normalize();
+    let turn = Quat::from_rotation_y(-0.008 * right) * Quat::from_axis_angle(side, -0.008 * down);
+    let expected = turn * home.direction();
+    assert!(vector("direction").distance(expected) < 1e-3, "{camera}: it does not look along {expected}");
+    let distance = (middle - home.position()).dot(home.direction());
+    let start = home.position() + distance * (home.direction() - expected);
+    let flown = vector("position") - start;
+    let ahead = flown.dot(expected);
+    assert!(ahead > 1e-3 && flown.distance(ahead * expected) < 1e-3, "from {start} by {flown}");
 }
 
 #[test]
@@ -314,12 +356,7 @@ fn the_panel_switches_passes_turns_knobs_and_moves_lamps() {
         rows.chunks(720).flat_map(|row| row[360..].to_vec()).collect()
     };
     let changes = |user: &mut User, what: &str, act: &dyn Fn(&User)| {
-        let mut before = picture(user);
-        user.wait("the picture stands still", |user| {
-            user.pause();
-            let now = picture(user);
-            std::mem::replace(&mut before, now.clone()) == now && now.iter().any(|texel| *texel != [0; 3])
-        });
+        let before = user.still(picture);
         act(user);
         user.wait(what, |user| picture(user) != before);
     };

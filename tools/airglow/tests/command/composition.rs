@@ -142,6 +142,34 @@ fn a_pass_left_out_is_gone_from_plan_and_memory_and_the_others_stay() {
 }
 
 #[test]
+fn a_pass_left_out_has_no_time_in_the_frame_and_no_memory() {
+    let stage = Stage::new();
+    let medium = "[medium]\nextinction = 0.05\nalbedo = 0.9\n";
+    let stat = |mesh: &str, more: &[&str]| -> Value {
+        let drawn =
+            ["-o", "out.exr", "--samples", "1", "--frames", "4", "--size", "32x18", "--stat", "stat.json"];
+        let scene = stage.write(mesh, &[FAR, medium, LAMP, BALL]);
+        stage.airglow("render", &scene, &[&drawn, more].concat());
+        serde_json::from_slice(&std::fs::read(stage.0.path().join("stat.json")).unwrap()).unwrap()
+    };
+    let timed = |stat: &Value, room: &str| {
+        let mut rows = stat["passes"].as_array().unwrap().iter();
+        assert!(rows.clone().all(|row| row["median_ms"].is_f64()), "{stat}");
+        rows.any(|row| row["name"].as_str().unwrap().split(' ').next() == Some(room))
+    };
+    let holds = |stat: &Value, room: &str| texts(stat, "memory", "owner").any(|owner| owner == room);
+    // Fog has memory of its own where lamps shine on surfaces in it. Maps have no pass: the scene's own draw looks them up.
+    let meshes = [("shadow", "ground.glb"), ("radiance", "ground.glb"), ("relight", "ground.glb")];
+    for (room, mesh) in meshes.into_iter().chain([("fog", "lights_room.glb")]) {
+        let [whole, left] = [&[][..], &["--without", room]].map(|more| stat(mesh, more));
+        assert_eq!([timed(&whole, room), timed(&left, room)], [true, false], "times of {room}");
+        assert_eq!([holds(&whole, room), holds(&left, room)], [true, false], "memory of {room}");
+    }
+    let left = stat("grooves.glb", &["--without", "normals"]);
+    assert!(!timed(&left, "normals") && !holds(&left, "normals"), "{left}");
+}
+
+#[test]
 fn near_light_and_maps_left_out_leave_the_pixels_of_a_scene_without_them() {
     let stage = Stage::new();
     let sky = stage.picture("ground.glb", &[SKY], &[]);
