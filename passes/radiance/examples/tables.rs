@@ -96,10 +96,13 @@ fn compare(lab: &Lab<'_>, counts: &[usize]) -> Result<(), Failure> {
                 print(&format!("{name}{with}, bound {:.1e}", settings.bound), &outcome);
                 let errors: Vec<_> =
                     rivals.iter().map(|rival| format!("{:.2}", outcome.error / rival.error)).collect();
-                let times = rivals[1].reconstruction / outcome.reconstruction;
+                let race = lab.race(settings, gradients, &even)?;
                 println!(
-                    "      {} of the even ones' errors; vertices {times:.1} times as fast",
-                    errors.join(", ")
+                    "      {} of the even ones' errors; vertices {:.1} ({:.1} to {:.1}) times as fast",
+                    errors.join(", "),
+                    race.estimate,
+                    race.low,
+                    race.high
                 );
             }
         }

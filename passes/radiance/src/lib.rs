@@ -80,7 +80,7 @@ pub use pass_settings::PassSettings;
 pub use picture::Picture;
 pub use radiance::Radiance;
 pub use receiver::Receiver;
-pub use reconstruct::{OVERLAP, Reconstruction, TRUST, Weights};
+pub use reconstruct::{DARK, OVERLAP, Reconstruction, TRUST, Weights};
 pub use refine::{HIDDEN, Refined, Sample, Sampler, Settings, refine};
 pub use resource::Resource;
 pub use shown::Shown;

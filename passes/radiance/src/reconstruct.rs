@@ -15,7 +15,8 @@ pub enum Weights {
     Inverse,
     /// `((R - d) / (R d))^2 / (1 + (d / H)^2)^4` of the nodes not split, in domains of [`OVERLAP`] times the reach: the light
     /// ends where the domain does (Franke and Nielson, "Smooth Interpolation of Large Sets of Scattered Data", 1980), and a
-    /// sample whose emitters are at a distance H says little of what is farther off than they are.
+    /// sample whose emitters are at a distance H says little of what is farther off than they are. [`DARK`] times that where a
+    /// sample sees no emitter.
     #[default]
     Compact,
 }
@@ -27,6 +28,10 @@ pub const OVERLAP: f64 = 1.5;
 /// How far a sample is continued by its gradients, as a part of the distance of its emitters: further on, a straight line is
 /// no longer near the light's change. Of 0.2, 0.25, 0.3, 0.5 and 1, 0.25 leaves the least error in a church lit by near lamps.
 pub const TRUST: f64 = 0.25;
+
+/// How much more samples count that no emitter reaches: where nothing arrives samples lie far apart, and without it the many
+/// of the lit side shine through a thin wall. More of it takes light from the lit side in turn.
+pub const DARK: f64 = 4.0;
 
 /// Samples, ready to be interpolated.
 #[derive(Debug)]
@@ -100,8 +105,11 @@ impl<'a> Reconstruction<'a> {
             Weights::Compact if radius <= self.least => 1.0 / (self.least * self.least),
             Weights::Compact => {
                 // At most so much less, so that the weights of none vanish.
-                let known = 1.0 / (1.0 + (distance / emitters).min(8.0).powi(2));
-                ((radius - near) / (radius * near)).max(0.0).powi(2) * known.powi(4)
+                let known = match emitters.is_finite() {
+                    true => (1.0 + (distance / emitters).min(8.0).powi(2)).powi(-4),
+                    false => DARK,
+                };
+                ((radius - near) / (radius * near)).max(0.0).powi(2) * known
             }
         }
     }

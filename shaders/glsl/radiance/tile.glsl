@@ -1,6 +1,6 @@
 // A tile of a face of a cube map, a block of rays an invocation, and what its rays see.
 //
-// The includer defines BLOCK.
+// The includer defines BLOCK and RAYS.
 
 #ifndef RADIANCE_TILE_GLSL
 #define RADIANCE_TILE_GLSL
@@ -22,10 +22,25 @@ struct Tile {
     int rays; // along a side of the face
 };
 
+// How far a ray lies off the middle of its part of a texel, in parts of 2 RAYS of that: rows and columns
+// are sheared so that all rays of a texel have rows and columns of their own, and edges along the axes, which are many, pass
+// as many as others do (Chiu, Shirley, Wang, "Multi-Jittered Sampling", Graphics Gems IV, 1994, without the jitter). A
+// rasteriser does not.
+ivec2 tile_shear(ivec2 ray)
+{
+#ifdef ATLAS
+    return ivec2(0);
+#else
+    return 2 * (ray.yx & (RAYS - 1)) + 1 - RAYS;
+#endif
+}
+
 // Where a ray of the tile passes the face.
 vec2 tile_at(Tile tile, ivec2 ray)
 {
-    precise vec2 at = tile.low + tile.side * (vec2(ray) + 0.5);
+    // Exact but for the last product and sum.
+    vec2 place = vec2(ray) + (0.5 + (0.5 / float(RAYS)) * vec2(tile_shear(ray)));
+    precise vec2 at = tile.low + tile.side * place;
     return at;
 }
 

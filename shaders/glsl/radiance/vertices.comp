@@ -7,7 +7,7 @@
 //
 // A workgroup has 256 vertices that are near one another, an invocation eight that are nearer still. One walk of the tree
 // finds the samples for all of them; an invocation keeps those that any of its eight needs, and what it reads of a sample
-// serves them all: reading takes longer than adding. A few coefficients at a time need neither all registers nor long code.
+// serves them all: reading takes longer than adding. Some coefficients at a time need neither all registers nor long code.
 //
 // ORDER      3 to 6
 // GRADIENTS  0 or 1: samples are continued by their gradients
@@ -19,7 +19,8 @@
 
 #define LANES 32
 #define EIGHT 8 // vertices of an invocation
-#define FOUR 4 // coefficients that it takes at a time
+// Coefficients that it takes at a time: weights are computed again for the next.
+#define SOME 8
 layout(local_size_x = LANES) in;
 
 layout(std430, set = 0, binding = 0) readonly buffer Tree { Node nodes[]; } tree;
@@ -53,6 +54,7 @@ layout(push_constant) uniform Settings {
     float overlap; // domains over reach
     float trust; // of the distance of the light: how far a sample is continued
     float largest; // domain there can be, metres
+    float dark; // root of how much more a sample counts that no emitter reaches
 } settings;
 
 const uint LIST = 256u;
@@ -103,7 +105,8 @@ float domain_weight(vec3 point, vec4 domain, float unit, float nearness)
     float edge = domain.w * unit;
     float far = min(away * nearness, 8.0);
     far = 1.0 + far * far;
-    float weight = max((edge - near) / (edge * near * (far * far)), 0.0);
+    float known = nearness > 0.0 ? 1.0 / (far * far) : settings.dark;
+    float weight = max((edge - near) / (edge * near), 0.0) * known;
     // A domain of one point: the vertex itself.
     weight = edge > 1e-6 ? weight * weight : 1e12;
     return away > domain.w ? 0.0 : weight;
@@ -124,8 +127,8 @@ void hold(vec3 points[EIGHT], uint lane)
     }
 }
 
-// Adds to four coefficients from the first on, of all vertices, what a listed sample says of them.
-void add(inout vec3 sums[EIGHT * FOUR], inout float totals[EIGHT], vec3 points[EIGHT], uint k, uint first)
+// Adds to some coefficients from the first on, of all vertices, what a listed sample says of them.
+void add(inout vec3 sums[EIGHT * SOME], inout float totals[EIGHT], vec3 points[EIGHT], uint k, uint first)
 {
     uint last = uint(COEFFICIENTS) - 1u;
     vec4 domain = domains[k];
@@ -149,7 +152,7 @@ void add(inout vec3 sums[EIGHT * FOUR], inout float totals[EIGHT], vec3 points[E
         steps[v] = weights[v] * (far > most ? most / far : 1.0) * way;
     }
 #endif
-    [[unroll]] for (int j = 0; j < FOUR; ++j) {
+    [[unroll]] for (int j = 0; j < SOME; ++j) {
         uint i = min(first + uint(j), last);
         vec3 value = lights.values[light + i].rgb;
 #if GRADIENTS
@@ -163,24 +166,30 @@ void add(inout vec3 sums[EIGHT * FOUR], inout float totals[EIGHT], vec3 points[E
 #if GRADIENTS
             sum += steps[v].x * x + steps[v].y * y + steps[v].z * z;
 #endif
-            sums[v * FOUR + j] += sum;
+            sums[v * SOME + j] += sum;
         }
     }
 }
 
-// Writes four coefficients of a vertex; those of a list before, if there was one, are there already.
-void write(vec3 sums[EIGHT * FOUR], int v, uint light, uint first, float total, bool begun, bool more)
+// Writes some coefficients of a vertex; those of a list before, if there was one, are there already.
+void write(vec3 sums[EIGHT * SOME], int v, uint light, uint first, float total, bool begun, bool more)
 {
-    for (uint j = 0u; j < uint(FOUR) && first + j < uint(COEFFICIENTS); ++j) {
-        uint at = light + 3u * (first + j);
-        vec3 sum = sums[uint(v * FOUR) + j];
-        if (begun) {
+    [[unroll]] for (int j = 0; j < SOME; ++j) {
+        uint i = first + uint(j);
+        uint at = light + 3u * i;
+        vec3 sum = sums[v * SOME + j];
+        // A loop, not a branch: software drivers run through a branch that nobody takes.
+        for (bool add = begun && i < uint(COEFFICIENTS); add; add = false) {
             sum += vec3(vertex_light.values[at], vertex_light.values[at + 1u], vertex_light.values[at + 2u]);
         }
-        if (!more) { sum = (total > 0.0 ? sum / total : vec3(0.0)) + distant.values[first + j].rgb; }
-        vertex_light.values[at] = sum.r;
-        vertex_light.values[at + 1u] = sum.g;
-        vertex_light.values[at + 2u] = sum.b;
+        for (bool last = !more && i < uint(COEFFICIENTS); last; last = false) {
+            sum = (total > 0.0 ? sum / total : vec3(0.0)) + distant.values[i].rgb;
+        }
+        if (i < uint(COEFFICIENTS)) {
+            vertex_light.values[at] = sum.r;
+            vertex_light.values[at + 1u] = sum.g;
+            vertex_light.values[at + 2u] = sum.b;
+        }
     }
 }
 
@@ -207,9 +216,9 @@ void main()
         barrier();
         more = next < settings.nodes;
         hold(points, lane);
-        for (uint first = 0u; first < uint(COEFFICIENTS) && begin < settings.count; first += uint(FOUR)) {
-            vec3 sums[EIGHT * FOUR];
-            [[unroll]] for (int i = 0; i < EIGHT * FOUR; ++i) { sums[i] = vec3(0.0); }
+        for (uint first = 0u; first < uint(COEFFICIENTS) && begin < settings.count; first += uint(SOME)) {
+            vec3 sums[EIGHT * SOME];
+            [[unroll]] for (int i = 0; i < EIGHT * SOME; ++i) { sums[i] = vec3(0.0); }
             for (uint from = 0u; from < found; from += 32u) {
                 for (int bits = held[from / 32u * LANES + lane]; bits != 0; bits &= bits - 1) {
                     add(sums, totals, points, from + uint(findLSB(bits)), first);

@@ -27,9 +27,9 @@ bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
         vec3 corner = triangle.corners[k].xyz;
         for (int i = 0; i < 3; ++i) { corners[k].axes[i] = exact_sum(corner[i], -point[i]); }
     }
-    // Whole numbers: rays lie at odd multiples of 1 / rays.
-    ivec2 odd = 2 * (tile.first + ray) + 1 - tile.rays;
-    vec3 way = face_world(tile.face, vec3(odd, tile.rays));
+    // Whole numbers, since rays lie at multiples of 1 / (RAYS rays).
+    ivec2 middle = 2 * (tile.first + ray) + 1 - tile.rays;
+    vec3 way = face_world(tile.face, vec3(RAYS * middle + tile_shear(ray), RAYS * tile.rays));
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
         float side = exact_side(way, corners[(k + 1) % 3], corners[(k + 2) % 3]);
@@ -42,7 +42,8 @@ bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
 // The rays that may meet a triangle of these corners, in coordinates of the face: from xy to zw.
 ivec4 tile_span(Tile tile, vec3 a, vec3 b, vec3 c)
 {
-    const float slack = 0.01; // rays: more than rounding moves an edge
+    // Of rays: how far one is off the middle of its part, and more than rounding moves an edge.
+    const float slack = 0.5 * float(RAYS - 1) / float(RAYS) + 0.01;
     const ivec4 all_ = ivec4(0, 0, TILE - 1, TILE - 1);
     float least = min(a.z, min(b.z, c.z));
     if (!face_meets(a, b, c, tile.low, tile.low + float(TILE) * tile.side)) { return ivec4(1, 1, 0, 0); }

@@ -8,7 +8,7 @@ use airglow_math::sh::rotation::Rotation;
 use bytemuck::{Pod, Zeroable};
 
 use super::{DeviceNode, LightShape, SampleBuffers};
-use crate::{OVERLAP, RadianceError, TRUST};
+use crate::{DARK, OVERLAP, RadianceError, TRUST};
 
 /// Vertices of a workgroup of [`module`].
 pub const GROUP: usize = 256;
@@ -80,6 +80,7 @@ struct Constants {
     overlap: f32,
     trust: f32,
     largest: f32,
+    dark: f32,
 }
 
 /// Bytes of the push constants of [`module`].
@@ -174,6 +175,7 @@ impl VertexKernels {
             overlap: OVERLAP as f32,
             trust: TRUST as f32,
             largest: (OVERLAP as f32 * work.reach).max(f32::MIN_POSITIVE),
+            dark: DARK.sqrt() as f32,
         })?;
         recorder.dispatch([work.count.div_ceil(GROUP as u32), 1, 1])
     }

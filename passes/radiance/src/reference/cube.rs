@@ -153,6 +153,16 @@ impl Cube {
         self.size * self.rays
     }
 
+    /// Where a ray passes its face, in -1 to 1. Rows and columns are sheared, so that all rays of a texel have rows and columns
+    /// of their own, and edges along the axes, which are many, pass as many rays as others do (Chiu, Shirley, Wang,
+    /// "Multi-Jittered Sampling", Graphics Gems IV, 1994, without the jitter).
+    fn place(&self, x: usize, y: usize) -> [f64; 2] {
+        let parts = |along: usize, across: usize| {
+            (2 * along + 1) * self.rays + 2 * (across % self.rays) + 1 - self.rays
+        };
+        [parts(x, y), parts(y, x)].map(|parts| parts as f64 / (self.fine() * self.rays) as f64 - 1.0)
+    }
+
     /// Keeps, in each ray of a face, the triangle if it is nearer than what is there.
     fn rasterise(
         &self,
@@ -176,7 +186,7 @@ impl Cube {
         let normal = edges.iter().sum::<DVec3>();
         for y in rows[0]..rows[1] {
             for x in columns[0]..columns[1] {
-                let ray = ray(face, self.fine(), x, y);
+                let ray = through(face, self.place(x, y));
                 let weights = edges.map(|edge| edge.dot(ray));
                 if weights.iter().any(|weight| *weight < 0.0) {
                     continue;
@@ -228,7 +238,7 @@ impl Cube {
         for (texel, solid_angle) in self.solid_angles.iter().enumerate() {
             let [x, y] = [texel % self.size, texel / self.size].map(|place| place * self.rays);
             let share = solid_angle / (self.rays * self.rays) as f64;
-            let (mut middle, mut count) = ([0, 0], 0);
+            let (mut middle, mut count) = ([0.0, 0.0], 0);
             let (mut power, mut slope, mut tilt) = (DVec3::ZERO, DVec3::ZERO, DMat3::ZERO);
             for ray in 0..self.rays * self.rays {
                 let [x, y] = [x + ray % self.rays, y + ray / self.rays];
@@ -236,7 +246,8 @@ impl Cube {
                 if radiance == DVec3::ZERO {
                     continue;
                 }
-                (middle, count) = ([middle[0] + 2 * x + 1, middle[1] + 2 * y + 1], count + 1);
+                let at = self.place(x, y);
+                (middle, count) = ([middle[0] + at[0], middle[1] + at[1]], count + 1);
                 let near = share / distance * radiance;
                 (power, slope) = (power + share * radiance, slope + near);
                 tilt += DMat3::from_cols(normal.x * near, normal.y * near, normal.z * near);
@@ -247,9 +258,7 @@ impl Cube {
                 continue;
             }
             incident.slope += slope;
-            let at = middle.map(|sum| sum as f64 / (count * self.fine()) as f64 - 1.0);
-            let [right, down, normal] = face.axes();
-            let ray = (normal + at[0] * right + at[1] * down).normalize();
+            let ray = through(face, middle.map(|sum| sum / count as f64)).normalize();
             let whole = count == self.rays * self.rays;
             let place = face as usize * self.solid_angles.len() + texel;
             // A medium dims less when the way is shorter: what a step along the ray adds.
@@ -292,7 +301,11 @@ impl Cube {
 
 /// The ray through a texel's centre, on the cube of half-side 1.
 fn ray(face: Face, size: usize, x: usize, y: usize) -> DVec3 {
+    through(face, [x, y].map(|i| (2 * i + 1) as f64 / size as f64 - 1.0))
+}
+
+/// The ray through a place on the cube of half-side 1.
+fn through(face: Face, [x, y]: [f64; 2]) -> DVec3 {
     let [right, down, normal] = face.axes();
-    let at = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
-    normal + at(x) * right + at(y) * down
+    normal + x * right + y * down
 }

@@ -53,12 +53,12 @@ fn pictures_are_read_and_light_is_dimmed_as_in_the_reference() {
 
 /// The rival that draws cube maps sees what the kernel sees.
 #[test]
-fn an_atlas_holds_what_the_kernel_sees() {
+fn an_atlas_holds_what_rays_through_the_middles_of_pixels_see() {
     let (emitters, points) = (blocks(), points(40));
     let settings = TexelSettings { shape: LightShape { order: 4, gradients: true }, size: 8, rays: 4 };
     with_bench(&Atlas::requirements(), |bench| {
-        let texels = Texels::new(bench.context, settings).unwrap();
-        let expected = bench.texels(&texels, &emitters, &points).unwrap();
+        let cube = Cube::new(4, 32).unwrap().with_gradients();
+        let expected: Vec<_> = points.iter().map(|point| cube.sample(*point, &emitters).unwrap()).collect();
         let atlas = Atlas::new(bench.context, settings, 512).unwrap();
         assert_eq!(atlas.most_samples(), 42);
         let buffers = bench.buffers(settings.shape, &emitters, &points).unwrap();
