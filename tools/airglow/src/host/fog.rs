@@ -27,7 +27,7 @@ pub struct SceneFog {
     pub(super) sky: Option<FoggedSky>,
     /// Counters of bad pixels, where they are asked for.
     pub(super) health: Option<InputHealth>,
-    medium: fog::Medium,
+    pub(super) medium: fog::Medium,
     lights: Vec<fog::Light>,
 }
 

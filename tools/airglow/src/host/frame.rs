@@ -91,7 +91,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
     let (bytes, time) = (renderer.relight_bytes, renderer.relight_seconds);
     let (filter, mut rotations) = (filter(renderer, settings), None);
     #[cfg(feature = "radiance")]
-    let mut near = None;
+    let (mut near, extinction) = (None, extinction(renderer, settings));
     #[cfg(feature = "normals")]
     let mut incident_rotations = None;
     let colours = match &mut renderer.lighting {
@@ -122,7 +122,7 @@ pub fn declare(renderer: &mut Renderer<'_>, settings: &Settings) -> Outcome<Decl
             #[cfg(feature = "radiance")]
             if let Some(emitters) = &lit.near {
                 // Near emitters first make the light of each vertex, the environment's with it.
-                let arrival = Arrival { turn: settings.turn, filter: filter.as_deref() };
+                let arrival = Arrival { turn: settings.turn, filter: filter.as_deref(), extinction };
                 let sampled = emitters.add(&mut graph, &mut imports, arrival)?;
                 counted::look(
                     renderer.counters.radiance.as_ref(),
@@ -296,6 +296,17 @@ pub(super) fn filter(renderer: &Renderer<'_>, settings: &Settings) -> Option<Vec
 #[cfg(not(feature = "fog"))]
 pub(super) fn filter(_: &Renderer<'_>, _: &Settings) -> Option<Vec<[f64; 3]>> {
     None
+}
+
+/// By how much the medium dims light that passes it, 1/m; zero in clear air.
+#[cfg(feature = "radiance")]
+pub(super) fn extinction(renderer: &Renderer<'_>, settings: &Settings) -> [f32; 3] {
+    #[cfg(feature = "fog")]
+    if let Some(fog) = renderer.fog.as_ref().filter(|_| settings.air.is_fog()) {
+        return fog.medium.extinction.map(|x| x as f32);
+    }
+    let _ = (renderer, settings);
+    [0.0; 3]
 }
 
 /// What it makes of the background.

@@ -51,6 +51,8 @@ pub struct Arrival<'a> {
     pub turn: DQuat,
     /// What a medium before it does to its bands; `None` in clear air.
     pub filter: Option<&'a [[f64; 3]]>,
+    /// By how much that medium dims what emitters send, 1/m; zero in clear air.
+    pub extinction: [f32; 3],
 }
 
 /// The record of the pass being left out of a scene; what it does not know, black receivers, it says itself.
@@ -177,17 +179,19 @@ impl NearLight {
         arrival: Arrival<'_>,
     ) -> Outcome<Lit> {
         let distant = self.arriving(arrival)?;
-        self.radiance.add(graph, imports, &self.receiver, &self.lights(&distant)).map_err(Failure::work)
+        let lights = self.lights(&distant, arrival);
+        self.radiance.add(graph, imports, &self.receiver, &lights).map_err(Failure::work)
     }
 
     /// Turns the distant light of a declared frame.
     pub fn turn(&self, control: &Control, arrival: Arrival<'_>) -> Outcome {
         let distant = self.arriving(arrival)?;
-        control.set(&self.lights(&distant)).map_err(Failure::work)
+        control.set(&self.lights(&distant, arrival)).map_err(Failure::work)
     }
 
-    fn lights<'a>(&'a self, distant: &'a [[f32; 3]]) -> Lights<'a> {
-        Lights { emitters: &self.triangles, spheres: &self.spheres, distant, ..Lights::NONE }
+    fn lights<'a>(&'a self, distant: &'a [[f32; 3]], arrival: Arrival<'_>) -> Lights<'a> {
+        let (emitters, spheres) = (&self.triangles, &self.spheres);
+        Lights { emitters, spheres, distant, extinction: arrival.extinction, ..Lights::NONE }
     }
 
     /// What the samples of the last frame left on the device, once it is done.
@@ -209,7 +213,7 @@ impl NearLight {
         &self.emitters
     }
 
-    fn arriving(&self, Arrival { turn, filter }: Arrival<'_>) -> Outcome<Vec<[f32; 3]>> {
+    fn arriving(&self, Arrival { turn, filter, .. }: Arrival<'_>) -> Outcome<Vec<[f32; 3]>> {
         if self.distant.is_empty() {
             return Ok(Vec::new());
         }

@@ -87,7 +87,8 @@ impl Renderer<'_> {
             && let Some(near) = &lit.near
         {
             let filter = frame::filter(self, settings);
-            near.turn(control, Arrival { turn, filter: filter.as_deref() })?;
+            let extinction = frame::extinction(self, settings);
+            near.turn(control, Arrival { turn, filter: filter.as_deref(), extinction })?;
         }
         match (&turning.rotations, &self.environment, &self.lighting) {
             (Some(rotations), Some(map), Lighting::Relight(lit)) => {

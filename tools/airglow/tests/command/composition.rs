@@ -11,16 +11,19 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use airglow::radiance::reference::Cube;
+use airglow::radiance::{Lights, Sphere};
 use airglow_scene::FloatImage;
 use airglow_scene::image_io::{read_image, write_exr};
+use glam::DVec3;
 use serde_json::Value;
 
 use super::root;
 
 const SIZE: [usize; 2] = [32, 18];
-/// Metres of the camera over the ground, which it looks straight down at, and its vertical angle.
+/// Metres of the camera over the ground, which it looks straight down at, and half of what it sees of it from top to bottom.
 const HEIGHT: f64 = 3.0;
-const ANGLE: f64 = 40.0;
+const HALF: f64 = 1.09;
 /// Metres of a near environment's light through the medium.
 const FAR: &str = "[environment]\nfile = 'env.exr'\ndistance = 40\n";
 const SKY: &str = "[environment]\nfile = 'env.exr'\n";
@@ -28,35 +31,46 @@ const LAMP: &str = "[[emitter]]\ncenter = [0.6, 1.2, 5]\nradius = 0.3\nradiance 
 const BALL: &str = "[[blocker]]\ncenter = [1.5, 1.2, 0]\nradius = 1.2\n";
 
 /// A folder with an environment that is red towards +X and blue towards -X.
-struct Stage(tempfile::TempDir);
+struct Stage {
+    folder: tempfile::TempDir,
+    /// Of the camera, metres.
+    height: f64,
+}
 
 impl Stage {
     fn new() -> Self {
+        Self::seen_from(HEIGHT)
+    }
+
+    /// The same ground seen from another height.
+    fn seen_from(height: f64) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let (width, height) = (32, 16);
         let texel = |at: usize| if at % width < width / 2 { [0.0, 0.1, 1.0] } else { [1.0, 0.1, 0.0] };
         let pixels = (0..width * height).map(texel).collect();
         write_exr(&folder.path().join("env.exr"), &FloatImage { width, height, pixels }).unwrap();
-        Self(folder)
+        Self { folder, height }
     }
 
     fn write(&self, mesh: &str, parts: &[&str]) -> PathBuf {
         let mesh = root().join("assets/mesh").join(mesh);
         let text = format!(
-            "[[gltf]]\nfile = '{}'\n{}[camera]\nfrom = [0, {HEIGHT}, 0]\nto = [0, 0, 0]\nup = [0, 0, -1]\n\
-             vertical_degrees = {ANGLE}\nnear = 0.1\nfar = 20\n[exposure]\nscale = 1\n\
+            "[[gltf]]\nfile = '{}'\n{}[camera]\nfrom = [0, {}, 0]\nto = [0, 0, 0]\nup = [0, 0, -1]\n\
+             vertical_degrees = {}\nnear = 0.1\nfar = 20\n[exposure]\nscale = 1\n\
              [quality]\norder = 4\nrays = 16\nshadow = 'unshadowed'\n",
             mesh.display(),
-            parts.concat()
+            parts.concat(),
+            self.height,
+            2.0 * (HALF / self.height).atan().to_degrees()
         );
-        let file = self.0.path().join("scene.toml");
+        let file = self.folder.path().join("scene.toml");
         std::fs::write(&file, text).unwrap();
         file
     }
 
     fn airglow(&self, command: &str, scene: &Path, more: &[&str]) -> Vec<u8> {
         let output = Command::new(env!("CARGO_BIN_EXE_airglow"))
-            .current_dir(self.0.path())
+            .current_dir(self.folder.path())
             .args([command, &scene.display().to_string(), "--device", "cpu", "--quiet"])
             .args(more)
             .output()
@@ -70,7 +84,7 @@ impl Stage {
         let size = format!("{}x{}", SIZE[0], SIZE[1]);
         let drawn = ["-o", "out.exr", "--samples", "1", "--frames", "1", "--size", &size];
         self.airglow("render", &self.write(mesh, parts), &[&drawn, more].concat());
-        let picture = read_image(&self.0.path().join("out.exr")).unwrap();
+        let picture = read_image(&self.folder.path().join("out.exr")).unwrap();
         picture.pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
     }
 
@@ -240,23 +254,58 @@ fn normal_maps_reflect_the_light_that_shadows_leave() {
     assert!(!differs(red) && !differs(blue), "left of mapped and of smooth cloth: {red:?}, {blue:?}");
 }
 
+/// Where each pixel sees the ground, metres.
+fn ground() -> impl Iterator<Item = [f64; 2]> {
+    let across = |i: usize, axis: usize| (2.0 * i as f64 + 1.0 - SIZE[axis] as f64) / SIZE[1] as f64 * HALF;
+    (0..SIZE[0] * SIZE[1]).map(move |at| [across(at % SIZE[0], 0), across(at / SIZE[0], 1)])
+}
+
+/// Metres from the ground to a camera.
+fn way(height: f64, [x, z]: [f64; 2]) -> f64 {
+    (height * height + x * x + z * z).sqrt()
+}
+
+/// It scatters nothing, so that it only takes.
+const MEDIUM: &str = "[medium]\nextinction = [0.05, 0.1, 0.2]\nalbedo = 0\n";
+const EXTINCTION: [f64; 3] = [0.05, 0.1, 0.2];
+
 #[test]
 fn fog_comes_last_and_once() {
-    let stage = Stage::new();
-    // It scatters nothing, so that all it does to near light is to take some on the way to the eye.
-    let medium = "[medium]\nextinction = [0.05, 0.1, 0.2]\nalbedo = 0\n";
-    let [clear, fogged] =
-        [&[LAMP, BALL][..], &[LAMP, BALL, medium]].map(|parts| stage.picture("ground.glb", parts, &[]));
-    let tangent = (0.5 * ANGLE).to_radians().tan();
+    let heights = [HEIGHT, 2.0 * HEIGHT];
+    let [near, far] =
+        heights.map(|height| Stage::seen_from(height).picture("ground.glb", &[LAMP, BALL, MEDIUM], &[]));
     let mut worst = 0.0_f64;
-    for (at, (clear, fogged)) in clear.iter().zip(&fogged).enumerate() {
-        let [x, y] = [at % SIZE[0], at / SIZE[0]].map(|i| i as f64 + 0.5);
-        let across = |i: f64, axis: usize| (2.0 * i - SIZE[axis] as f64) / SIZE[1] as f64 * tangent;
-        let length = HEIGHT * (1.0 + across(x, 0).powi(2) + across(y, 1).powi(2)).sqrt();
-        for (c, extinction) in [0.05, 0.1, 0.2].into_iter().enumerate() {
-            let expected = clear[c] * (-extinction * length).exp();
-            worst = worst.max((fogged[c] - expected).abs() / expected.max(1e-3));
+    for (place, (near, far)) in ground().zip(near.iter().zip(&far)) {
+        let further = way(heights[1], place) - way(heights[0], place);
+        for (c, extinction) in EXTINCTION.into_iter().enumerate() {
+            let expected = near[c] * (-extinction * further).exp();
+            worst = worst.max((far[c] - expected).abs() / expected.max(1e-3));
         }
     }
     assert!(worst < 1e-3, "relative difference {worst:.1e} from one passage");
+}
+
+#[test]
+fn the_medium_dims_near_light_on_its_way_to_the_surface() {
+    let stage = Stage::new();
+    let none = "[medium]\nextinction = 0\nalbedo = 0\n";
+    let [clear, empty, fogged] =
+        [&[LAMP][..], &[LAMP, none], &[LAMP, MEDIUM]].map(|parts| stage.picture("ground.glb", parts, &[]));
+    assert!(clear == empty, "a medium of no extinction differs by {:.1e}", difference(&clear, &empty));
+    let lamp = [Sphere { centre: DVec3::new(0.6, 1.2, 5.0), radius: 0.3, radiance: DVec3::ONE }];
+    let cube = Cube::new(1, 64).unwrap();
+    let arriving = |point: DVec3, extinction: [f32; 3]| {
+        let lights = Lights { spheres: &lamp, extinction, ..Lights::default() };
+        cube.sample_lights(point, &lights).unwrap().coefficients[0]
+    };
+    let mut worst = 0.0_f64;
+    for (place, (clear, fogged)) in ground().zip(clear.iter().zip(&fogged)).step_by(7) {
+        let point = DVec3::new(place[0], 0.0, place[1]);
+        let left = arriving(point, EXTINCTION.map(|x| x as f32)) / arriving(point, [0.0; 3]);
+        for (c, extinction) in EXTINCTION.into_iter().enumerate() {
+            let expected = clear[c] * left[c] * (-extinction * way(HEIGHT, place)).exp();
+            worst = worst.max((fogged[c] - expected).abs() / expected);
+        }
+    }
+    assert!(worst < 0.02, "relative difference {worst:.1e} from light dimmed twice");
 }

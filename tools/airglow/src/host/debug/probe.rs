@@ -35,6 +35,8 @@ impl Shown<'_> {
         let context = self.device.context();
         let (mut graph, mut imports) = (Graph::new(), Imports::new());
         let filter = frame::filter(renderer, &self.settings);
+        #[cfg(feature = "radiance")]
+        let extinction = frame::extinction(renderer, &self.settings);
         let posed = renderer.skins.as_ref().map_or(Vec::new(), |skins| skins.add(&mut graph, &mut imports));
         let environment =
             renderer.scene.environment.as_ref().zip(renderer.environment.as_ref()).map(|(sky, map)| {
@@ -68,7 +70,7 @@ impl Shown<'_> {
             Frame { light: environment.unwrap_or(Light::None), instances: instances.collect(), target: None };
         #[cfg(feature = "radiance")]
         if let Some(near) = &lit.near {
-            let arrival = Arrival { turn: self.settings.turn, filter: filter.as_deref() };
+            let arrival = Arrival { turn: self.settings.turn, filter: filter.as_deref(), extinction };
             let sampled = near.add(&mut graph, &mut imports, arrival)?;
             relit.light = if sampled.light.is_empty() { Light::None } else { Light::Vertices };
             relit

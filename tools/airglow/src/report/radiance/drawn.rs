@@ -35,7 +35,7 @@ impl Measurement<'_> {
                  vertex shader places and clips, {texels} rendered texels ({size} texels with {rays} x {rays} rays, six \
                  faces each), and a kernel that projects it. Triangles are the emitters', more and more finely cut."
             ),
-            norm: "none: both see the same rays".to_owned(),
+            norm: "none: both see as many rays".to_owned(),
             timed: "sampling alone, device time of a frame".to_owned(),
             points: self.race("kernel or rasteriser", runners)?,
             chosen: None,
