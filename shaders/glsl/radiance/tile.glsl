@@ -25,13 +25,15 @@ struct Tile {
 // How far a ray lies off the middle of its part of a texel, in parts of 2 RAYS of that: rows and columns
 // are sheared so that all rays of a texel have rows and columns of their own, and edges along the axes, which are many, pass
 // as many as others do (Chiu, Shirley, Wang, "Multi-Jittered Sampling", Graphics Gems IV, 1994, without the jitter). A
-// rasteriser does not.
-ivec2 tile_shear(ivec2 ray)
+// rasteriser does not. The quarters of a face mirror one another, so that no turn of the axes changes what is seen.
+ivec2 tile_shear(Tile tile, ivec2 ray)
 {
 #ifdef ATLAS
     return ivec2(0);
 #else
-    return 2 * (ray.yx & (RAYS - 1)) + 1 - RAYS;
+    ivec2 middle = 2 * (tile.first + ray) + 1 - tile.rays;
+    int turn = (middle.x < 0) == (middle.y < 0) ? 1 : -1;
+    return turn * (2 * (ray.yx & (RAYS - 1)) + 1 - RAYS);
 #endif
 }
 
@@ -39,7 +41,7 @@ ivec2 tile_shear(ivec2 ray)
 vec2 tile_at(Tile tile, ivec2 ray)
 {
     // Exact but for the last product and sum.
-    vec2 place = vec2(ray) + (0.5 + (0.5 / float(RAYS)) * vec2(tile_shear(ray)));
+    vec2 place = vec2(ray) + (0.5 + (0.5 / float(RAYS)) * vec2(tile_shear(tile, ray)));
     precise vec2 at = tile.low + tile.side * place;
     return at;
 }

@@ -29,7 +29,7 @@ bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
     }
     // Whole numbers, since rays lie at multiples of 1 / (RAYS rays).
     ivec2 middle = 2 * (tile.first + ray) + 1 - tile.rays;
-    vec3 way = face_world(tile.face, vec3(RAYS * middle + tile_shear(ray), RAYS * tile.rays));
+    vec3 way = face_world(tile.face, vec3(RAYS * middle + tile_shear(tile, ray), RAYS * tile.rays));
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
         float side = exact_side(way, corners[(k + 1) % 3], corners[(k + 2) % 3]);

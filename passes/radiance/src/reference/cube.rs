@@ -20,6 +20,8 @@ pub struct Cube {
     order: usize,
     /// Rays along a side of a texel.
     rays: usize,
+    /// Whether rays lie in rows and columns.
+    straight: bool,
     /// Solid angle of each texel of a face.
     solid_angles: Vec<f64>,
     /// Basis at each texel's centre, `[face][y][x][coefficient]`.
@@ -68,7 +70,7 @@ impl Cube {
             let ray = ray(Face::ALL[texel / (size * size)], size, texel % size, texel / size % size);
             evaluate(order, ray.normalize(), values)?;
         }
-        Ok(Self { size, order, rays: 1, solid_angles, basis, slopes: Vec::new() })
+        Ok(Self { size, order, rays: 1, straight: false, solid_angles, basis, slopes: Vec::new() })
     }
 
     /// The same cube, that sends `rays` by `rays` rays through each texel, whose basis is then taken in the middle of those
@@ -82,6 +84,12 @@ impl Cube {
         }
         self.rays = rays;
         Ok(self)
+    }
+
+    /// The same cube, whose rays lie in rows and columns, as those of a rasteriser do.
+    #[must_use]
+    pub fn with_straight_rays(self) -> Self {
+        Self { straight: true, ..self }
     }
 
     /// The same cube, whose samples hold gradients, too.
@@ -155,12 +163,16 @@ impl Cube {
 
     /// Where a ray passes its face, in -1 to 1. Rows and columns are sheared, so that all rays of a texel have rows and columns
     /// of their own, and edges along the axes, which are many, pass as many rays as others do (Chiu, Shirley, Wang,
-    /// "Multi-Jittered Sampling", Graphics Gems IV, 1994, without the jitter).
+    /// "Multi-Jittered Sampling", Graphics Gems IV, 1994, without the jitter). The quarters of a face mirror one another, so
+    /// that no turn of the axes changes what is seen.
     fn place(&self, x: usize, y: usize) -> [f64; 2] {
-        let parts = |along: usize, across: usize| {
-            (2 * along + 1) * self.rays + 2 * (across % self.rays) + 1 - self.rays
+        let [middle_x, middle_y] = [x, y].map(|i| (2 * i + 1) as f64 - self.fine() as f64);
+        let turn = match self.straight {
+            true => 0.0,
+            false => (middle_x * middle_y).signum(),
         };
-        [parts(x, y), parts(y, x)].map(|parts| parts as f64 / (self.fine() * self.rays) as f64 - 1.0)
+        let shear = |across: usize| turn * ((2 * (across % self.rays) + 1) as f64 / self.rays as f64 - 1.0);
+        [middle_x + shear(y), middle_y + shear(x)].map(|place| place / self.fine() as f64)
     }
 
     /// Keeps, in each ray of a face, the triangle if it is nearer than what is there.

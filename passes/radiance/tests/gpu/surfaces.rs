@@ -57,7 +57,7 @@ fn an_atlas_holds_what_rays_through_the_middles_of_pixels_see() {
     let (emitters, points) = (blocks(), points(40));
     let settings = TexelSettings { shape: LightShape { order: 4, gradients: true }, size: 8, rays: 4 };
     with_bench(&Atlas::requirements(), |bench| {
-        let cube = Cube::new(4, 32).unwrap().with_gradients();
+        let cube = Cube::new(4, 8).unwrap().with_rays(4).unwrap().with_straight_rays().with_gradients();
         let expected: Vec<_> = points.iter().map(|point| cube.sample(*point, &emitters).unwrap()).collect();
         let atlas = Atlas::new(bench.context, settings, 512).unwrap();
         assert_eq!(atlas.most_samples(), 42);

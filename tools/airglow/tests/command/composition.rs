@@ -45,10 +45,11 @@ impl Stage {
     /// The same ground seen from another height.
     fn seen_from(height: f64) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let (width, height) = (32, 16);
-        let texel = |at: usize| if at % width < width / 2 { [0.0, 0.1, 1.0] } else { [1.0, 0.1, 0.0] };
-        let pixels = (0..width * height).map(texel).collect();
-        write_exr(&folder.path().join("env.exr"), &FloatImage { width, height, pixels }).unwrap();
+        let size = [32, 16];
+        let texel = |at: usize| if at % size[0] < size[0] / 2 { [0.0, 0.1, 1.0] } else { [1.0, 0.1, 0.0] };
+        let pixels = (0..size[0] * size[1]).map(texel).collect();
+        write_exr(&folder.path().join("env.exr"), &FloatImage { width: size[0], height: size[1], pixels })
+            .unwrap();
         Self { folder, height }
     }
 
