@@ -7,9 +7,11 @@ use glam::DVec3;
 
 use crate::NormalsError;
 use crate::brdf::{Brdf, Directions};
+use crate::fit::FitSettings;
 use crate::map::{NormalMap, Sample};
-use crate::method::Method;
-use crate::reference;
+use crate::method::{Method, below};
+use crate::ordered::Ordered;
+use crate::{reference, shade};
 
 /// Texels looked at, from level 2 to level 5 in turn.
 const TEXELS: u32 = 24;
@@ -42,8 +44,15 @@ pub struct Choice {
     pub left_out: Option<LeftOut>,
 }
 
-/// Chooses for a map and a material, by the error over texels, lights and views spread evenly. The same input gives the
-/// same choice.
+/// A texel that is looked at: lights and views, and the truth under each.
+struct Looked {
+    texel: [usize; 3],
+    rows: Vec<Directions>,
+    truths: Vec<f64>,
+}
+
+/// Chooses for a map and a material, by the error over texels, lights and views spread evenly. Lobes are measured in the
+/// order that a built texture has them in. The same input gives the same choice.
 ///
 /// # Errors
 /// [`NormalsError::Range`] for a material or a target out of range.
@@ -52,26 +61,12 @@ pub fn choose(map: &NormalMap, brdf: Brdf, target: f64) -> Result<Choice, Normal
     if !(target > 0.0 && target <= 1.0) {
         return Err(NormalsError::Range { what: "the error aimed at", value: target, range: "above 0 to 1" });
     }
-    let mut rows = Vec::new();
-    let mut truths = Vec::new();
-    for i in 0..TEXELS {
-        let level = (LEVELS.start() + i as usize % LEVELS.count()).min(map.levels() - 1);
-        let [u, v] = sobol(i, 5);
-        let place = |axis: usize, at: f64| (at * map.size(level)[axis] as f64) as usize;
-        let texel = [level, place(0, u), place(1, v)];
-        let footprint = map.footprint(level, texel[1], texel[2])?;
-        for row in 0..ROWS {
-            if let Some(directions) = directions(&footprint, i * ROWS + row, brdf)? {
-                truths.push(reference::radiance(&footprint, brdf, directions));
-                rows.push((texel, directions));
-            }
-        }
-    }
+    let looked = (0..TEXELS).map(|i| Looked::new(map, brdf, i)).collect::<Result<Vec<_>, _>>()?;
+    let truths: Vec<f64> = looked.iter().flat_map(|looked| looked.truths.iter().copied()).collect();
     let mut best: Option<(Method, f64)> = None;
     for method in TRIED {
-        let values = rows.iter().map(|&(texel, directions)| method.radiance(map, texel, brdf, directions));
         // Nothing that reflects anywhere needs nothing.
-        let error = relative_l2(&values.collect::<Result<Vec<_>, _>>()?, &truths).unwrap_or(0.0);
+        let error = relative_l2(&radiances(map, method, brdf, &looked)?, &truths).unwrap_or(0.0);
         if best.is_none_or(|(_, least)| error < least) {
             best = Some((method, error));
         }
@@ -81,6 +76,55 @@ pub fn choose(map: &NormalMap, brdf: Brdf, target: f64) -> Result<Choice, Normal
     }
     let (method, error) = best.unwrap_or((DEFAULT, f64::INFINITY));
     Ok(Choice { method, error, within: error <= target, left_out: left_out(map, method, error, target) })
+}
+
+impl Looked {
+    /// The texel of a number.
+    fn new(map: &NormalMap, brdf: Brdf, i: u32) -> Result<Self, NormalsError> {
+        let level = (LEVELS.start() + i as usize % LEVELS.count()).min(map.levels() - 1);
+        let [u, v] = sobol(i, 5);
+        let place = |axis: usize, at: f64| (at * map.size(level)[axis] as f64) as usize;
+        let texel = [level, place(0, u), place(1, v)];
+        let footprint = map.footprint(level, texel[1], texel[2])?;
+        let (mut rows, mut truths) = (Vec::new(), Vec::new());
+        for row in 0..ROWS {
+            if let Some(directions) = directions(&footprint, i * ROWS + row, brdf)? {
+                truths.push(reference::radiance(&footprint, brdf, directions));
+                rows.push(directions);
+            }
+        }
+        Ok(Self { texel, rows, truths })
+    }
+}
+
+/// What a method makes of all rows.
+fn radiances(
+    map: &NormalMap,
+    method: Method,
+    brdf: Brdf,
+    looked: &[Looked],
+) -> Result<Vec<f64>, NormalsError> {
+    let lobes = if let Method::Lobes(lobes) = method { lobes } else { 4 };
+    let mut ordered = Ordered::new(map, FitSettings { lobes, ..Default::default() });
+    let mut values = Vec::new();
+    for Looked { texel, rows, .. } in looked {
+        let texels = match method {
+            Method::Lobes(_) => vec![*texel],
+            Method::Taps => below(map, *texel).to_vec(),
+            _ => {
+                let found = rows.iter().map(|&directions| method.radiance(map, *texel, brdf, directions));
+                values.extend(found.collect::<Result<Vec<_>, _>>()?);
+                continue;
+            }
+        };
+        let mixtures =
+            texels.into_iter().map(|texel| ordered.mixture(texel)).collect::<Result<Vec<_>, _>>()?;
+        values.extend(rows.iter().map(|&directions| {
+            let sum: f64 = mixtures.iter().map(|mixture| shade::radiance(mixture, brdf, directions)).sum();
+            sum / mixtures.len() as f64
+        }));
+    }
+    Ok(values)
 }
 
 /// A light from above, and a view: from above too, or along the mirror of a normal give or take the reflection's width.

@@ -45,6 +45,7 @@ mod method;
 mod mixture;
 mod normals;
 pub mod octahedral;
+mod ordered;
 mod preset;
 pub mod reference;
 pub mod rivals;

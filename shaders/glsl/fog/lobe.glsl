@@ -56,11 +56,18 @@ float fog_lobe(int table, float optical, float column)
     return exp(mix(mixed.x, mixed.y, share.x) - optical);
 }
 
-// G_n of each channel; `grey` where their optical distances are one.
+// G_n of each channel; `grey` where their optical distances are one: then a single turn of the loop, which spares software
+// renderers what they do on both sides of a branch.
 vec3 fog_lobe_rgb(int table, vec3 optical, bool grey, float column)
 {
-    float red = fog_lobe(table, optical.r, column);
-    return grey ? vec3(red) : vec3(red, fog_lobe(table, optical.g, column), fog_lobe(table, optical.b, column));
+    vec3 found = vec3(0.0);
+    int channel = 0;
+    do {
+        float value = fog_lobe(table, optical[channel], column);
+        found = vec3(channel == 0 ? value : found.r, channel <= 1 ? value : found.g, value);
+        ++channel;
+    } while (!grey && channel < 3);
+    return found;
 }
 #endif
 

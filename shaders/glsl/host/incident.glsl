@@ -30,19 +30,19 @@ Gathered gathered_none()
     return Gathered(none, none, 0.0);
 }
 
-// Adds a lobe of normals, or one normal where the concentration is huge, by a share.
+// Adds what a lobe of normals mirrors, by a share.
 void gather_specular(inout Gathered sum, float share, NormalsLobe lobe, float alpha, vec3 view)
 {
-    NormalsMirrored mirrored = normals_mirrored(lobe, alpha, view);
-    mirrored.bands *= share;
-    normals_add_moments(sum.specular, mirrored.bands, mirrored.direction);
-    sum.grazing += mirrored.bands.x * mirrored.grazing;
+    normals_add_mirrored(sum.specular, sum.grazing, share, lobe, alpha, view);
 }
 
+// Adds one normal.
 void gather_normal(inout Gathered sum, float share, vec3 normal, float alpha, vec3 view)
 {
     normals_add_moments(sum.diffuse, vec3(share), normal);
-    gather_specular(sum, share, NormalsLobe(normal, NORMALS_MAX_CONCENTRATION, 1.0), alpha, view);
+    NormalsMirrored mirrored = normals_mirrored(normal, alpha, view);
+    normals_add_moments(sum.specular, share * mirrored.bands, mirrored.direction);
+    sum.grazing += share * mirrored.bands.x * mirrored.grazing;
 }
 
 // Radiance towards the eye; `flat_colour` is that of a white diffuse surface with a flat map.

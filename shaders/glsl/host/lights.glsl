@@ -34,19 +34,24 @@ vec3 light_irradiance(Light light, vec3 position, out vec3 towards)
 }
 
 #if AIRGLOW_FOG
-// What the medium about a surface scatters onto it of a light, and the surface to the eye; see `lights_reflected`. A spot
+// What the medium about a place scatters there of a light; nothing of a directional one, and beyond a light's range. A spot
 // shines into the medium as its light would, spread over the whole sphere.
-vec3 light_glow(Light light, vec3 base, vec2 surface, float alpha, vec3 f0, vec3 n, vec3 v, vec3 position)
+FogIncident light_scattered(Light light, vec3 position)
 {
-    if (light.position_range.w < 0.0) { return vec3(0.0); }
     vec3 path = light.position_range.xyz - position;
     float reach = light.position_range.w;
-    if (reach > 0.0 && dot(path, path) > reach * reach) { return vec3(0.0); }
+    bool reaches = reach == 0.0 || (reach > 0.0 && dot(path, path) <= reach * reach);
     float scale = light.intensity_scale.w;
     float share = scale > 0.0 ? 0.5 * (1.0 + light.axis_offset.w / scale) : 1.0;
-    vec3 scattered = share * light.intensity_scale.rgb;
-    FogIncident incident = fog_incident(lights.extinction.rgb, lights.scattering.rgb, vec3(0.0), scattered, path);
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - dot(n, v), 5.0);
+    vec3 scattered = reaches ? share * light.intensity_scale.rgb : vec3(0.0);
+    return fog_incident(lights.extinction.rgb, lights.scattering.rgb, vec3(0.0), scattered, path);
+}
+
+// What a surface sends on of it to the eye; see `lights_reflected`.
+vec3 glow_reflected(FogIncident incident, vec3 base, vec2 surface, float alpha, vec3 f0, vec3 n, vec3 v)
+{
+    if (incident.glow == vec3(0.0)) { return vec3(0.0); }
+    vec3 fresnel = f0 + (1.0 - f0) * pow(clamp(1.0 - dot(n, v), 0.0, 1.0), 5.0);
     vec3 diffuse = (1.0 - fresnel) * (1.0 - surface.x) * base / LIGHTS_PI;
     vec3 glow = diffuse * fog_lobe_glow(incident, n, int(material.flags >> 8u & 0xffu), 1.0);
     int table = int(material.flags >> 16u);
@@ -67,7 +72,7 @@ vec3 lights_reflected(vec3 base, vec2 surface, vec3 normal, vec3 position, vec3 
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < lights.count.x; ++i) {
 #if AIRGLOW_FOG
-        sum += light_glow(lights.lights[i], base, surface, alpha, f0, n, v, position);
+        sum += glow_reflected(light_scattered(lights.lights[i], position), base, surface, alpha, f0, n, v);
 #endif
         vec3 l;
         vec3 irradiance = light_irradiance(lights.lights[i], position, l);

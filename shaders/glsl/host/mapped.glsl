@@ -59,16 +59,20 @@ Mapped mapped_at(vec2 uv, vec2 across, vec2 along)
     // Where a single texel is seen, the normal itself is shaded; the first level of what is kept is level 1.
     mapped.share = clamp(1.0 - level, 0.0, 1.0);
     if (mapped.share < 1.0) {
-        for (int i = 0; i < MAPPED_LAYERS; ++i) {
-            for (float tap = 0.5; tap < taps; tap += 1.0) {
-                vec3 place = vec3(uv + longer * (tap / taps - 0.5), float(i));
-                vec4 found = textureLod(sampler2DArray(coarse_normals, coarse_normals_sampler), place, level - 1.0);
+        // Never without a turn: a loop that may end before its first costs software renderers one turn more.
+        float tap = 0.5;
+        do {
+            vec2 place = uv + longer * (tap / taps - 0.5);
+            for (int i = 0; i < MAPPED_LAYERS; ++i) {
+                vec4 found =
+                    textureLod(sampler2DArray(coarse_normals, coarse_normals_sampler), vec3(place, float(i)), level - 1.0);
 #if MAPPED_OCTAHEDRAL
                 found = normals_octahedral(found);
 #endif
                 mapped.kept[i] += found / taps;
             }
-        }
+            tap += 1.0;
+        } while (tap < taps);
     }
 #endif
     return mapped;
@@ -105,16 +109,27 @@ vec2 mean_reflected(vec3 mean, float alpha, vec3 l, vec3 v, vec3 h)
     return normal_reflected(mean / size, mean_widened(size, alpha), l, v, h);
 }
 
-// The same of what is kept of the distribution.
-vec2 kept_reflected(Mapped mapped, float alpha, vec3 l, vec3 v, vec3 h)
+// How a pixel sees the surface: tangent, bitangent and normal in the world, the view in these axes, and the material.
+struct Seen {
+    mat3 axes;
+    vec3 view;
+    float alpha;
+    NormalsGgx ggx; // of alpha
+    vec3 f0;
+    vec3 diffuse; // share that does not mirror, times the colour
+};
+
+// What `normal_reflected` gives, of what is kept of the distribution.
+vec2 kept_reflected(Mapped mapped, Seen seen, vec3 l, vec3 h)
 {
+    float alpha = seen.alpha;
+    vec3 v = seen.view;
 #if defined(FILTER_LOBES)
-    NormalsGgx ggx = normals_ggx_of(alpha);
     vec2 sum = vec2(0.0);
     for (int i = 0; i < MAPPED_LAYERS; ++i) {
         vec4 lobe = mapped.kept[i];
         if (lobe.w > 1e-4) {
-            sum += vec2(normals_lambert(lobe, l), normals_torrance_sparrow(lobe, ggx, alpha, l, v, h));
+            sum += vec2(normals_lambert(lobe, l), normals_torrance_sparrow(lobe, seen.ggx, alpha, l, v, h));
         }
     }
     return sum;
@@ -185,50 +200,45 @@ void kept_gathered(inout Gathered sum, float share, Mapped mapped, float alpha, 
 }
 #endif
 
-// How a pixel sees the surface: tangent, bitangent and normal in the world, the view in these axes, and the material.
-struct Seen {
-    mat3 axes;
-    vec3 view;
-    float alpha;
-    vec3 f0;
-    vec3 diffuse; // share that does not mirror, times the colour
-};
-
 #if AIRGLOW_FOG
-// What the medium scatters onto the surface of a light: each lobe's, as of a normal on its axis. The glow is as wide as the
-// lobes of reflection, and lobes of normals are narrower.
-vec3 mapped_glow(Mapped mapped, Light light, Seen seen, vec3 base, vec2 surface, vec3 position)
+// What the medium scatters onto the surface of the scene's lights: each lobe's, as of a normal on its axis. The glow is as
+// wide as the lobes of reflection, and lobes of normals are narrower.
+vec3 mapped_glow(Mapped mapped, Seen seen, vec3 base, vec2 surface, vec3 position)
 {
     vec3 view = seen.axes * seen.view;
-    vec3 sum = vec3(0.0);
-#define GLOW(n) light_glow(light, base, surface, seen.alpha, seen.f0, normalize(seen.axes * (n)), view, position)
-    if (mapped.share > 0.0) { sum += mapped.share * GLOW(mapped.normal); }
-    if (mapped.share == 1.0) { return sum; }
     float rest = 1.0 - mapped.share;
+    vec3 sum = vec3(0.0);
+    uint i = 0u;
+    do {
+        FogIncident incident = light_scattered(lights.lights[i], position);
+#define GLOW(n) glow_reflected(incident, base, surface, seen.alpha, seen.f0, normalize(seen.axes * (n)), view)
+        if (mapped.share > 0.0) { sum += mapped.share * GLOW(mapped.normal); }
+        if (rest > 0.0) {
 #if defined(FILTER_LOBES)
-    for (int i = 0; i < MAPPED_LAYERS; ++i) {
-        vec4 lobe = mapped.kept[i];
-        if (lobe.w > 1e-4) { sum += rest * lobe.w * GLOW(lobe.xyz); }
-    }
+            for (int j = 0; j < MAPPED_LAYERS; ++j) {
+                vec4 lobe = mapped.kept[j];
+                if (lobe.w > 1e-4) { sum += rest * lobe.w * GLOW(lobe.xyz); }
+            }
 #elif defined(FILTER_HARMONICS)
-    sum += rest * GLOW(vec3(-mapped.kept[0].w, -mapped.kept[0].y, mapped.kept[0].z));
+            sum += rest * GLOW(vec3(-mapped.kept[0].w, -mapped.kept[0].y, mapped.kept[0].z));
 #elif defined(FILTER_LEAN)
-    sum += rest * GLOW(vec3(mapped.kept[0].xy, 1.0));
+            sum += rest * GLOW(vec3(mapped.kept[0].xy, 1.0));
 #else
-    sum += rest * GLOW(mapped.kept[0].xyz + vec3(0.0, 0.0, 1e-6));
+            sum += rest * GLOW(mapped.kept[0].xyz + vec3(0.0, 0.0, 1e-6));
 #endif
+        }
+        ++i;
+    } while (i < lights.count.x);
     return sum;
 }
 #endif
 
-// Radiance of the scene's lights; `surface` is metallic and roughness.
-vec3 mapped_lit(Mapped mapped, Seen seen, vec3 base, vec2 surface, vec3 position)
+// Radiance of the scene's lights, of which there is at least one.
+vec3 mapped_lit(Mapped mapped, Seen seen, vec3 position)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < lights.count.x; ++i) {
-#if AIRGLOW_FOG
-        sum += mapped_glow(mapped, lights.lights[i], seen, base, surface, position);
-#endif
+    uint i = 0u;
+    do {
         vec3 towards;
         vec3 irradiance = light_irradiance(lights.lights[i], position, towards);
         vec3 l = towards * seen.axes;
@@ -237,12 +247,11 @@ vec3 mapped_lit(Mapped mapped, Seen seen, vec3 base, vec2 surface, vec3 position
         if (mapped.share > 0.0) {
             reflected += mapped.share * normal_reflected(mapped.normal, seen.alpha, l, seen.view, h);
         }
-        if (mapped.share < 1.0) {
-            reflected += (1.0 - mapped.share) * kept_reflected(mapped, seen.alpha, l, seen.view, h);
-        }
+        if (mapped.share < 1.0) { reflected += (1.0 - mapped.share) * kept_reflected(mapped, seen, l, h); }
         vec3 fresnel = seen.f0 + (1.0 - seen.f0) * pow(clamp(1.0 - dot(l, h), 0.0, 1.0), 5.0);
         sum += irradiance * ((1.0 - fresnel) * seen.diffuse * reflected.x + fresnel * reflected.y);
-    }
+        ++i;
+    } while (i < lights.count.x);
     return sum;
 }
 
@@ -260,33 +269,40 @@ vec3 mapped_reflected(
     seen.axes = mat3(t, b, n);
     seen.view = towards_eye * seen.axes;
     seen.alpha = max(surface.y * surface.y, 0.002);
+    seen.ggx = normals_ggx_of(seen.alpha);
     seen.f0 = mix(vec3(0.04), base, surface.x);
     seen.diffuse = (1.0 - surface.x) * base;
     vec2 across = dFdx(uv);
     vec2 along = dFdy(uv);
+    bool lit = lights.count.x > 0u;
     vec3 sum = vec3(0.0);
+#if MAPPED_PARTS == 4
+    // What reflects lights is sharp, and taken of each quarter; what follows is smooth, and taken of all that the pixel sees.
+    Mapped mapped;
+    mapped.normal = vec3(0.0);
+    for (int i = 0; i < MAPPED_LAYERS; ++i) { mapped.kept[i] = vec4(0.0); }
+    int part = 0;
+    do {
+        vec2 side = 0.5 * vec2(ivec2(part & 1, part >> 1)) - 0.25;
+        Mapped quarter = mapped_at(uv + side.x * across + side.y * along, 0.5 * across, 0.5 * along);
+        if (lit) { sum += 0.25 * mapped_lit(quarter, seen, position); }
+        mapped.share = quarter.share;
+        mapped.normal += quarter.normal;
+        for (int i = 0; i < MAPPED_LAYERS; ++i) { mapped.kept[i] += 0.25 * quarter.kept[i]; }
+        ++part;
+    } while (part < 4);
+    mapped.normal = normalize(mapped.normal + vec3(0.0, 0.0, 1e-6));
+#else
+    Mapped mapped = mapped_at(uv, across, along);
+    if (lit) { sum += mapped_lit(mapped, seen, position); }
+#endif
+#if AIRGLOW_FOG
+    if (lit) { sum += mapped_glow(mapped, seen, base, surface, position); }
+#endif
 #if HOST_INCIDENT
     Gathered gathered = gathered_none();
-#endif
-    const float part = 1.0 / float(MAPPED_PARTS);
-    for (int i = 0; i < MAPPED_PARTS; ++i) {
-#if MAPPED_PARTS == 4
-        vec2 side = 0.5 * vec2(ivec2(i & 1, i >> 1)) - 0.25;
-        Mapped mapped = mapped_at(uv + side.x * across + side.y * along, 0.5 * across, 0.5 * along);
-#else
-        Mapped mapped = mapped_at(uv, across, along);
-#endif
-        sum += part * mapped_lit(mapped, seen, base, surface, position);
-#if HOST_INCIDENT
-        if (mapped.share > 0.0) {
-            gather_normal(gathered, part * mapped.share, mapped.normal, seen.alpha, seen.view);
-        }
-        if (mapped.share < 1.0) {
-            kept_gathered(gathered, part * (1.0 - mapped.share), mapped, seen.alpha, seen.view);
-        }
-#endif
-    }
-#if HOST_INCIDENT
+    if (mapped.share > 0.0) { gather_normal(gathered, mapped.share, mapped.normal, seen.alpha, seen.view); }
+    if (mapped.share < 1.0) { kept_gathered(gathered, 1.0 - mapped.share, mapped, seen.alpha, seen.view); }
     bool matt = (material.flags & 4u) != 0u;
     return sum + gathered_radiance(gathered, flat_colour, base, seen.f0, seen.diffuse, seen.axes, matt);
 #else

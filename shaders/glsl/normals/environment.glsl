@@ -8,17 +8,17 @@
 
 #include "normals/harmonics.glsl"
 
-// What a lobe mirrors towards a view, but for Fresnel's factor.
+// What a normal mirrors towards a view, but for Fresnel's factor.
 struct NormalsMirrored {
     vec3 direction;
     vec3 bands;    // with normals_add_moments or NORMALS_HARMONIC_SUM about the direction
     float grazing; // (1 - v.h)^5 of Fresnel's factor by Schlick
 };
 
-// GGX with shadowing and masking over a lobe, which widens it by its variance. Weight, the two bands beside it and the sine of
-// the direction, as a share of the view's, are polynomials in alpha and in the cosine of the view, fitted to quadrature:
-// root mean squares of what is left 0.009, 0.004, 0.008 and 0.006.
-NormalsMirrored normals_mirrored(NormalsLobe lobe, float alpha, vec3 view)
+// GGX with shadowing and masking about a single normal. Weight, the two bands beside it and the sine of the direction, as a
+// share of the view's, are polynomials in alpha and in the cosine of the view, fitted to quadrature: root mean squares of
+// what is left 0.009, 0.004, 0.008 and 0.006.
+NormalsMirrored normals_mirrored(vec3 normal, float alpha, vec3 view)
 {
     const vec4 fitted[16] = vec4[16](
         vec4(0.86752, 1.01785, 1.02042, 1.04166), vec4(0.74097, 0.11285, 0.27698, 0.01395),
@@ -30,25 +30,41 @@ NormalsMirrored normals_mirrored(NormalsLobe lobe, float alpha, vec3 view)
         vec4(0.38166, -0.62675, -1.06059, 0.09475), vec4(-6.44982, 1.64186, 4.35799, 3.27261),
         vec4(15.76896, -0.49183, -4.75331, -3.86179), vec4(-8.67411, -0.81746, 0.55186, 2.06659)
     );
-    float a = min(sqrt(alpha * alpha + 2.0 * lobe.mean / lobe.concentration), 1.0);
-    float t = dot(lobe.axis, view);
+    float a = min(alpha, 1.0);
+    float t = dot(normal, view);
     float c = clamp(t, 0.02, 1.0);
     vec4 value = vec4(0.0);
     for (int i = 12; i >= 0; i -= 4) {
         value = value * a + (fitted[i] + c * (fitted[i + 1] + c * (fitted[i + 2] + c * fitted[i + 3])));
     }
     NormalsMirrored mirrored;
-    // Normals that turn away from the view are hidden: of a lobe a share, n.v spread evenly about its mean.
-    float spread = 1.7320508 * sqrt(lobe.mean / lobe.concentration * max(1.0 - t * t, 1e-6));
-    float seen = clamp(0.5 + 0.5 * lobe.mean * t / max(spread, 1e-6), 0.0, 1.0);
-    mirrored.bands = seen * max(value.x, 0.0) * vec3(1.0, clamp(value.yz, 0.0, 1.0));
+    mirrored.bands = (t > 0.0 ? max(value.x, 0.0) : 0.0) * vec3(1.0, clamp(value.yz, 0.0, 1.0));
     // Across the axis the direction lies opposite to the view.
-    vec3 across = clamp(value.w, -1.0, 1.0) * (t * lobe.axis - view);
-    mirrored.direction = across + sqrt(max(1.0 - dot(across, across), 0.0)) * lobe.axis;
+    vec3 across = clamp(value.w, -1.0, 1.0) * (t * normal - view);
+    mirrored.direction = across + sqrt(max(1.0 - dot(across, across), 0.0)) * normal;
     float rest = 1.0 - c;
     float square = rest * rest;
     mirrored.grazing = square * square * rest / (1.0 + 17.0 * a * square);
     return mirrored;
+}
+
+// What a lobe mirrors, added to a sum; `grazing` sums weights times those of Fresnel. Four normals stand for it, as far from
+// its axis as its variance says, two of them in the plane of the view: a wider reflection about the axis would not do,
+// as masking and Fresnel's factor, and whether a normal is seen at all, hang on how each is turned to the view.
+void normals_add_mirrored(inout NormalsMoments sum, inout float grazing, float weight, NormalsLobe lobe, float alpha, vec3 view)
+{
+    vec3 across = view - dot(lobe.axis, view) * lobe.axis;
+    float size = dot(across, across);
+    vec3 any = abs(lobe.axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    across = size > 1e-8 ? across * inversesqrt(size) : normalize(cross(lobe.axis, any));
+    float apart = sqrt(2.0 * lobe.mean / lobe.concentration);
+    for (int i = 0; i < 4; ++i) {
+        vec3 offset = i < 2 ? across : cross(lobe.axis, across);
+        vec3 normal = normalize(lobe.axis + ((i & 1) == 0 ? apart : -apart) * offset);
+        NormalsMirrored mirrored = normals_mirrored(normal, alpha, view);
+        normals_add_moments(sum, 0.25 * weight * mirrored.bands, mirrored.direction);
+        grazing += 0.25 * weight * mirrored.bands.x * mirrored.grazing;
+    }
 }
 
 #endif

@@ -58,8 +58,10 @@ void main()
     } else if (kind == 4.0) {
         value = NORMALS_HARMONIC_LAMBERT(light, COEFFICIENT);
     } else if (kind == 6.0) {
-        NormalsMirrored mirrored = normals_mirrored(normals_lobe(lobe), alpha, rows.values[row].view.xyz);
-        value = lobe.w * NORMALS_HARMONIC_SUM(mirrored.direction, mirrored.bands, COEFFICIENT);
+        NormalsMoments moments = NormalsMoments(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+        float grazing = 0.0;
+        normals_add_mirrored(moments, grazing, lobe.w, normals_lobe(lobe), alpha, rows.values[row].view.xyz);
+        value = NORMALS_MOMENTS_SUM(moments, vec3(1.0), COEFFICIENT);
     } else if (kind == 7.0) {
         // From axes about the half vector, by way of moments.
         NormalsLobe seen = normals_lobe(lobe);

@@ -33,20 +33,32 @@ float normals_concentration_ratio(float r, float missing)
     return 1.0 + missing * (1.9952537 + r * (-0.9115766 + r * (0.5581401 - 0.7153818 * r)));
 }
 
-// The concentration of a mean vector of length r.
-float normals_concentration(float r, float missing)
+// r / k, the variance across the axis, within 9e-4 in the same way.
+float normals_variance_across(float r, float missing)
 {
-    return clamp(r * normals_concentration_ratio(r, missing) / max(missing, 1e-7), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
+    const vec4 bend = vec4(-0.6669316, -0.3381041, -0.06966979, -0.6625777);
+    return missing * (1.0 + missing * (bend.x + r * (bend.y + r * (bend.z + r * (bend.w + 0.7808136 * r)))));
 }
+
+// Weights below are those of empty places, and what is left of normals all over the sphere has no direction.
+const float NORMALS_LEAST_WEIGHT = 1e-9;
+const float NORMALS_LEAST_MEAN = 1e-6;
 
 NormalsLobe normals_lobe(vec4 stored)
 {
     float squared = dot(stored.xyz, stored.xyz);
-    if (squared <= 0.0 || stored.w <= 0.0) { return NormalsLobe(vec3(0.0, 0.0, 1.0), NORMALS_MIN_CONCENTRATION, 0.0); }
-    float inverse = inversesqrt(squared);
-    float size = squared * inverse;
-    float r = min(size / stored.w, 1.0);
-    return NormalsLobe(stored.xyz * inverse, normals_concentration(r, max(1.0 - r, 0.0)), r);
+    if (stored.w <= NORMALS_LEAST_WEIGHT || squared <= NORMALS_LEAST_MEAN * NORMALS_LEAST_MEAN * stored.w * stored.w) {
+        return NormalsLobe(vec3(0.0, 0.0, 1.0), NORMALS_MIN_CONCENTRATION, 0.0);
+    }
+    // Quotients cost more than products: three are made of one.
+    float size = sqrt(squared);
+    float lacks = max(stored.w - size, 1e-7 * stored.w);
+    float over = 1.0 / (size * stored.w * lacks);
+    float of_weight = over * size * lacks;
+    float r = min(size * of_weight, 1.0);
+    float ratio = normals_concentration_ratio(r, lacks * of_weight);
+    float concentration = clamp(size * ratio * (over * size * stored.w), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
+    return NormalsLobe(stored.xyz * (over * stored.w * lacks), concentration, r);
 }
 
 // A lobe as functions take it, from one sampled as axis, width and weight in four unsigned bytes.
@@ -77,8 +89,8 @@ float normals_versine(vec3 a, vec3 b)
 // direction. Its integral is factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes
 // into the exponent.
 struct NormalsProduct {
-    float concentration;
     float mean;
+    float across; // variance across its axis
     float own;
     float other;
     float apart; // 1 - cosine of its axis and the direction
@@ -86,25 +98,31 @@ struct NormalsProduct {
     float exponent;
 };
 
-// `apart`: 1 - cosine of the lobe's axis and the direction.
+// `apart`: 1 - cosine of the lobe's axis and the direction. Quotients cost more than products: seven are made of two.
 NormalsProduct normals_times(NormalsLobe lobe, float sharpness, float apart)
 {
     const float least = 0.05; // of a concentration: products of what lies opposite, of which nothing is left
     float k = lobe.concentration;
     float both = k + sharpness;
-    float across = 2.0 * k * sharpness * apart;
-    float size = max(sqrt(max(both * both - across, 0.0)), least);
-    float inverse = 1.0 / size;
+    float crossed = 2.0 * k * sharpness * apart;
+    float size = max(sqrt(max(both * both - crossed, 0.0)), least);
+    float sum = size + both;
+    float side = max(sum - k * apart, 1e-3 * size);
+    float over = 1.0 / (size * sum * side);
+    float inverse = over * sum * side;
     NormalsProduct product;
-    product.concentration = size;
-    product.mean = normals_mean_length(size);
     product.own = k * inverse;
     product.other = sharpness * inverse;
-    product.apart = product.own * product.own * apart * (2.0 - apart)
-        / max(1.0 + product.other + product.own * (1.0 - apart), 1e-3);
-    // (1 - exp(-2 k)) / k = 2 / (1 + k + k r), of both.
-    product.factor = (1.0 + k + k * lobe.mean) / (1.0 + size + size * product.mean);
-    product.exponent = -across / (size + both);
+    product.apart = product.own * (k * over * size * sum) * apart * (2.0 - apart);
+    product.exponent = -crossed * (over * size * side);
+    // The mean is that of `normals_mean_length`, by the inverse; (1 - exp(-2 k)) / k = 2 / (1 + k + k r), of both.
+    float above = 0.2351182 + inverse * (0.5028762 + inverse);
+    float below = 0.2351182 + inverse * (0.7379943 + inverse * (1.5689180 + 3.0 * inverse));
+    float open = (1.0 + inverse) * below + above;
+    float quotient = 1.0 / (below * open);
+    product.mean = above * open * quotient;
+    product.across = product.mean * inverse;
+    product.factor = (1.0 + k + k * lobe.mean) * inverse * below * below * quotient;
     return product;
 }
 
@@ -132,12 +150,10 @@ float normals_clamped_cosine(float across, float r, float cosine)
 // The same of a lobe that is stored, its weight left out.
 float normals_clamped_cosine(vec4 stored, vec3 light)
 {
-    float squared = max(dot(stored.xyz, stored.xyz), 1e-30);
-    float inverse = inversesqrt(squared);
-    float r = min(squared * inverse / max(stored.w, 1e-30), 1.0);
-    float missing = 1.0 - r;
-    float across = missing / normals_concentration_ratio(r, missing);
-    return normals_clamped_cosine(across, r, inverse * dot(stored.xyz, light));
+    float squared = dot(stored.xyz, stored.xyz);
+    float over = 1.0 / max(sqrt(squared) * stored.w, 1e-36);
+    float r = min(squared * over, 1.0);
+    return normals_clamped_cosine(normals_variance_across(r, 1.0 - r), r, stored.w * over * dot(stored.xyz, light));
 }
 
 // Lambert, albedo 1: the mean of (n.l)+ / pi.
@@ -156,7 +172,7 @@ float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vec
     float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * x;
     float integral = product.factor * exp(product.exponent + height);
     float cosine = product.own * dot(lobe.axis, light) + product.other * dot(half_vector, light);
-    cosine = normals_clamped_cosine(product.mean / product.concentration, product.mean, cosine);
+    cosine = normals_clamped_cosine(product.across, product.mean, cosine);
     return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * cosine;
 }
 

@@ -55,11 +55,16 @@ vec4 normals_reflecting_ggx(NormalsLobe lobe, NormalsGgx ggx, vec3 half_vector)
     float sine = apart * (2.0 - apart);
     float k = lobe.concentration;
     float missing = 1.0 - lobe.mean;
-    float variance = lobe.mean / k;
+    float variance = normals_variance_across(lobe.mean, missing);
     float opening = 2.0 / (1.0 + k + k * lobe.mean);
     vec4 rates = ggx.rates * ggx.narrowing;
-    vec4 narrow = 1.0 - 1.0 / (1.0 + 2.0 * variance * rates);
-    vec4 kept = 1.0 / (1.0 + 2.0 * rates * (variance + (opening - variance) * narrow));
+    // narrow = 1 - 1 / wide, kept = 1 / (1 + 2 rates (variance + (opening - variance) narrow)), of one quotient.
+    vec4 grown = 2.0 * variance * rates;
+    vec4 wide = 1.0 + grown;
+    vec4 square = wide * wide + 2.0 * (opening - variance) * rates * grown;
+    vec4 over = 1.0 / (wide * square);
+    vec4 narrow = grown * square * over;
+    vec4 kept = wide * wide * over;
     vec4 distance = sine + narrow * (2.0 * apart * k * opening - sine);
     vec4 integrals = ggx.heights * kept * exp(-rates * distance * kept);
     // The mean lies between the axes, by the share that the lobe keeps of its width; on the sphere, not on the chord.
@@ -119,14 +124,20 @@ float normals_masking(float alpha, float nl, float nv)
     return 0.5 / max(l + v, 1e-6);
 }
 
-// The mean of D(n.h) G / (4 (n.l)+ (n.v)) (n.l)+, the model of Torrance and Sparrow with GGX, but for Fresnel's factor: that
-// depends on light and half vector alone, and is the caller's to multiply. `ggx` is of `alpha`.
-float normals_torrance_sparrow(vec4 stored, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
+// The mean of D(n.h) G / (4 (n.l)+ (n.v)) (n.l)+ over a lobe, the model of Torrance and Sparrow with GGX, but for Fresnel's
+// factor: that depends on light and half vector alone, and is the caller's to multiply. `ggx` is of `alpha`.
+float normals_torrance_sparrow(NormalsLobe lobe, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
 {
-    vec4 reflecting = normals_reflecting_ggx(normals_lobe(stored), ggx, half_vector);
+    vec4 reflecting = normals_reflecting_ggx(lobe, ggx, half_vector);
     vec3 mean = reflecting.xyz / max(reflecting.w, 1e-30);
     float nl = normals_clamped_cosine(reflecting, light);
-    return stored.w * reflecting.w * nl * normals_masking(alpha, nl, max(dot(mean, view), 1e-4));
+    return reflecting.w * nl * normals_masking(alpha, nl, max(dot(mean, view), 1e-4));
+}
+
+// The same of a lobe that is stored.
+float normals_torrance_sparrow(vec4 stored, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
+{
+    return stored.w * normals_torrance_sparrow(normals_lobe(stored), ggx, alpha, light, view, half_vector);
 }
 
 #endif

@@ -63,6 +63,10 @@ pub struct Arguments {
     /// Samples along each side of a pixel, of all filters but the truth.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     samples: u32,
+    /// Passes of --samples that make each filter's picture: as many as silhouettes need, and what is left of the error is
+    /// the filter's own.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    filter_passes: u32,
     /// Passes of 16 samples a pixel that make the truth.
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=4096))]
     passes: u32,
@@ -143,7 +147,7 @@ fn draw(
         air: Air::default(),
         window: None,
     };
-    let passes = if truth { arguments.passes } else { 1 };
+    let passes = if truth { arguments.passes } else { arguments.filter_passes };
     let name = name(filter);
     let bar =
         output.progress(&name, (arguments.distances.len() + arguments.zoom as usize) as u64, "pictures");

@@ -13,6 +13,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(feature = "fog")]
 use super::complete::Complete;
+use super::depth_first::{DepthFirst, is_worth};
 use super::filter::{MAPPED_BINDINGS, MappedFragments};
 use super::formats::DEPTH;
 use super::lights::LightsConstants;
@@ -31,19 +32,32 @@ pub struct Pipelines {
     fogged: Option<[GraphicsPipeline; 2]>,
     /// The same for surfaces with normal maps, by how they are looked up and whether in fog.
     mapped: BTreeMap<(Look, bool), MappedPipelines>,
+    /// Before these, which cost most of all draws.
+    depth_first: Option<DepthFirst>,
     /// Behind the surfaces.
     pub sky: SkyPipelines,
     develop: ComputePipeline,
     hdr: vk::Format,
 }
 
-/// The pipelines for surfaces whose maps are looked up in one way.
+/// For surfaces whose maps are looked up in one way.
 #[derive(Clone)]
 struct MappedPipelines {
     lit: GraphicsPipeline,
     ambient: GraphicsPipeline,
     /// Lit by the radiance that meets the vertices, too.
     incident: Option<GraphicsPipeline>,
+}
+
+impl MappedPipelines {
+    /// The one for the light that vertices have, and what of their incident radiance it takes.
+    fn of(&self, colours: bool, incident: Option<Part>) -> (&GraphicsPipeline, Option<Part>) {
+        match (&self.incident, incident) {
+            (Some(pipeline), Some(_)) if colours => (pipeline, incident),
+            _ if colours => (&self.lit, None),
+            _ => (&self.ambient, None),
+        }
+    }
 }
 
 /// What passes wrote for a scene's vertices: a buffer, and where that of each instance begins.
@@ -174,6 +188,7 @@ impl Pipelines {
             ambient,
             fogged: fogged.map(in_fog).transpose()?,
             mapped: mapped.iter().map(with_map).collect::<Result<_, _>>()?,
+            depth_first: (!mapped.is_empty()).then(|| DepthFirst::new(context)).transpose()?,
             sky: SkyPipelines::new(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
@@ -202,6 +217,14 @@ impl Pipelines {
         posed: &[Posed],
         size: [u32; 2],
     ) -> Drawn {
+        let mapped = self.mapped.clone();
+        #[cfg(feature = "fog")]
+        let complete = lights.and_then(|lights| lights.complete.clone());
+        // The complete model has no draw of normal maps.
+        #[cfg(feature = "fog")]
+        let mapped = if complete.is_some() { BTreeMap::new() } else { mapped };
+        let first = self.depth_first.as_ref().filter(|_| !mapped.is_empty() && is_worth(scene));
+        let first = first.map(|pass| pass.add(graph, scene, view, posed, size));
         let mut pass = graph.pass("scene draw", PassKind::Graphics);
         posed.iter().for_each(|posed| posed.read(&mut pass));
         let incident = colours.and_then(|light| light.incident.as_ref());
@@ -217,29 +240,27 @@ impl Pipelines {
         }
         let image = |format| ImageDesc::new_2d(size[0], size[1], format);
         let hdr = pass.create_image("hdr", image(self.hdr), Access::ColorAttachmentWrite);
-        let depth = pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite);
+        let depth = match first {
+            Some(depth) => pass.update(depth, Access::DepthAttachmentReadWrite),
+            None => pass.create_image("depth", image(DEPTH), Access::DepthAttachmentWrite),
+        };
         let [lit, ambient] = match (&self.fogged, lobes) {
             (Some([lit, ambient]), Some(_)) => [lit, ambient],
             _ => [&self.lit, &self.ambient],
         };
         let lit = if colours.is_some() { lit } else { ambient };
         #[cfg(feature = "fog")]
-        let complete = lights.and_then(|lights| lights.complete.clone());
-        #[cfg(feature = "fog")]
         let lit = complete.as_ref().map_or(lit, |complete| complete.pipelines.of(colours.is_some()));
         let (pipeline, sky) = (lit.clone(), self.sky.clone());
-        let mapped = self.mapped.clone();
-        // The complete model has no draw of normal maps.
-        #[cfg(feature = "fog")]
-        let mapped = if complete.is_some() { BTreeMap::new() } else { mapped };
         let glow = behind.and_then(|behind| behind.glow.clone());
         let (scene, view) = (Arc::clone(scene), view.clone());
         let (colours, incident, lights) = (colours.cloned(), incident.cloned(), lights.cloned());
         pass.record(Box::new(move |recorder, resources| {
             let targets = [resources.view(&hdr)?, resources.view(&depth)?];
+            let load = first.map_or(Load::Clear(1.0), |_| Load::Keep);
             recorder.begin_rendering(&Rendering {
                 colors: &[ColorAttachment { view: &targets[0], load: Load::Clear([0.0, 0.0, 0.0, 1.0]) }],
-                depth: Some(DepthAttachment { view: &targets[1], load: Load::Clear(1.0), write: true }),
+                depth: Some(DepthAttachment { view: &targets[1], load, write: true }),
             })?;
             let view = recorder.upload(&[view.get()])?;
             let mut bound = vec![Binding::uniform(0, &view)];
@@ -268,36 +289,15 @@ impl Pipelines {
                     .mapped
                     .as_ref()
                     .and_then(|map| Some((map, mapped.get(&(map.look, lobes.is_some()))?)));
-                let Some((map, pipelines)) = map else {
-                    let normals = lights.is_some();
-                    record_draw(
-                        recorder,
-                        resources,
-                        &pipeline,
-                        draw,
-                        &bound,
-                        normals,
-                        None,
-                        [colours, None],
-                    )?;
-                    continue;
+                let (pipeline, bound, map, incident) = match map {
+                    Some((map, pipelines)) => {
+                        let (pipeline, incident) = pipelines.of(colours.is_some(), incident);
+                        (pipeline, &of_maps, Some(&map.bindings), incident)
+                    }
+                    None => (&pipeline, &bound, None, None),
                 };
-                let (pipeline, incident) = match (&pipelines.incident, incident, colours) {
-                    (Some(pipeline), Some(incident), Some(_)) => (pipeline, Some(incident)),
-                    (_, _, Some(_)) => (&pipelines.lit, None),
-                    (_, _, None) => (&pipelines.ambient, None),
-                };
-                let arrays = [colours, incident];
-                record_draw(
-                    recorder,
-                    resources,
-                    pipeline,
-                    draw,
-                    &of_maps,
-                    true,
-                    Some(&map.bindings),
-                    arrays,
-                )?;
+                let (normals, arrays) = (map.is_some() || lights.is_some(), [colours, incident]);
+                record_draw(recorder, resources, pipeline, draw, bound, normals, map, arrays)?;
             }
             if let Some(environment) = &scene.environment {
                 sky.record(recorder, &view, environment, glow.as_ref())?;
@@ -337,14 +337,13 @@ impl Pipelines {
             )?;
             let Region { size, column, row_length } = region;
             let Development { samples, exposure, blue_first } = development;
-            let blue_first = blue_first.into();
             recorder.push_constants(&DevelopConstants {
                 size,
                 samples,
                 exposure,
                 column,
                 row_length,
-                blue_first,
+                blue_first: blue_first.into(),
             })?;
             recorder.dispatch([size[0].div_ceil(8), size[1].div_ceil(8), 1])
         }));

@@ -2,7 +2,7 @@
 //!
 //! From below: `device` opens and adopts a device; `needed` says which passes a scene has work for. `bake` computes on the
 //! CPU what is computed once (`transfer`, `spheres`, `near_tree`), and `source` says what lights the vertices. `scene` and
-//! `upload` bring arrays to the device, `shaders`, `surface`, `sky` and `draw` hold the host's own draws. Each pass has a
+//! `upload` bring arrays to the device, `shaders`, `surface`, `sky`, `depth_first` and `draw` hold the host's own draws. Each pass has a
 //! file or two: `relight`, `incident`, `near`, `shadow`, `fog`, `mapped`; `lighting` holds those that light vertices.
 //! `renderer` owns it all, `frame` declares a whole frame in one function, and `picture` compiles and draws it; `moving`,
 //! `remake` and `told` change it between frames and say what passes counted. `truth` computes on the CPU, by rays, what the
@@ -20,6 +20,8 @@ pub mod complete;
 pub mod counted;
 #[cfg(feature = "relight")]
 pub mod debug;
+#[cfg(feature = "relight")]
+pub mod depth_first;
 #[cfg(all(feature = "fog", feature = "relight"))]
 pub mod depth_fog;
 pub mod device;

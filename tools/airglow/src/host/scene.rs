@@ -219,6 +219,11 @@ impl MaterialConstants {
         self.flags |= INCIDENT_IN_WORLD;
     }
 
+    /// Whether the surface has holes.
+    pub fn has_holes(&self) -> bool {
+        self.emissive_cutoff[3] > 0.0
+    }
+
     /// Puts what is drawn elsewhere.
     #[cfg(feature = "radiance")]
     pub fn place(&mut self, world_from_object: glam::Mat4) {

@@ -1,11 +1,14 @@
-//! Normal maps end to end: small pictures of a scene beside the truth, in clear air and in a medium, and files of lobes.
+//! Normal maps end to end: small pictures of a scene beside the truth, in clear air and in a medium, a flat map beside none,
+//! and files of lobes.
 
 #![cfg(all(feature = "fog", feature = "normals", feature = "relight"))]
 
 use std::path::Path;
 use std::process::Command;
 
-use serde_json::Value;
+use airglow_math::statistics::relative_l2;
+use airglow_scene::image_io::read_image;
+use serde_json::{Value, json};
 
 use super::root;
 
@@ -40,6 +43,58 @@ fn filtered_maps_look_like_their_texels() {
     let rows = maps(&scene, folder.path(), &["--filters", "lobes,mip"]);
     println!("in a medium: {rows}");
     assert!(error(&rows, "lobes") < 0.5 * error(&rows, "mip"), "{rows}");
+}
+
+/// The picture of a matt ring under a sky alone, with this normal texture.
+fn ring_under_a_sky(folder: &Path, name: &str, normal_texture: Option<Value>) -> Vec<f64> {
+    let glb = std::fs::read(root().join("assets/mesh/weave.glb")).unwrap();
+    let end = 20 + u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut content: Value = serde_json::from_slice(&glb[20..end]).unwrap();
+    let image = root().join("assets/normalmap/weave.png");
+    std::fs::copy(image, folder.join("weave.png")).unwrap();
+    content["images"][0]["uri"] = json!("weave.png");
+    content["scenes"][0]["nodes"] = json!([0]); // without the lights
+    let surface =
+        json!({"baseColorFactor": [0.7, 0.6, 0.4, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9});
+    content["materials"][0] = json!({"pbrMetallicRoughness": surface});
+    normal_texture.into_iter().for_each(|texture| content["materials"][0]["normalTexture"] = texture);
+    let mut text = content.to_string();
+    text.push_str(&" ".repeat((4 - text.len() % 4) % 4));
+    let length = |bytes: usize| (bytes as u32).to_le_bytes();
+    let all = length(20 + text.len() + glb.len() - end);
+    let changed = [&glb[..8], &all, &length(text.len()), &glb[16..20], text.as_bytes(), &glb[end..]].concat();
+    std::fs::write(folder.join(format!("{name}.glb")), changed).unwrap();
+    let sky = root().join("assets/env/sunrise_512.exr").canonicalize().unwrap();
+    let scene = format!(
+        "[[gltf]]\nfile = '{name}.glb'\n[environment]\nfile = '{}'\n[quality]\norder = 4\nrays = 16\n\
+         [camera]\nfrom = [0, 1.2, 2.2]\nto = [0, 0, 0]\n",
+        sky.display()
+    );
+    std::fs::write(folder.join(format!("{name}.toml")), scene).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_airglow"));
+    command.current_dir(folder).args(["render", &format!("{name}.toml"), "-o", &format!("{name}.exr")]);
+    command.args(["--size", "48x32", "--frames", "1", "--device", "cpu", "--quiet"]);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = read_image(&folder.join(format!("{name}.exr"))).unwrap();
+    picture.pixels.as_flattened().iter().map(|&value| value.into()).collect()
+}
+
+/// A map that is flat leaves relight's own colour, up to what eight bits tilt its normals by: 0.3 degrees.
+#[test]
+fn a_flat_map_has_the_colour_of_relight() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name, scale| {
+        let texture = |scale: f64| json!({"index": 0, "scale": scale});
+        ring_under_a_sky(folder.path(), name, Option::map(scale, texture))
+    };
+    let (bare, flat, woven) = (of("bare", None), of("flat", Some(0.0)), of("woven", Some(1.0)));
+    let difference = relative_l2(&flat, &bare).unwrap();
+    let most = flat.iter().zip(&bare).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+    let mapped = relative_l2(&woven, &bare).unwrap();
+    println!("flat: {difference:.1e} of the picture, {most:.1e} of a pixel at most; woven: {mapped:.1e}");
+    assert!(difference < 2e-3 && most < 1e-2, "{difference} {most}");
+    assert!(mapped > 20.0 * difference, "the map is drawn: {mapped}");
 }
 
 #[test]
