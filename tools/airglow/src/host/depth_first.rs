@@ -9,7 +9,6 @@ use airglow_gpu::{
 };
 use airglow_graph::{Access, Graph, Handle, Image, ImageDesc, PassKind};
 
-use super::draw::DEPTH;
 use super::scene::{DeviceScene, MaterialConstants};
 use super::shaders;
 use super::skin::Posed;
@@ -21,12 +20,14 @@ pub fn is_worth(scene: &DeviceScene) -> bool {
 }
 
 /// The pass: the same vertex stage as that of the draw, and no fragments.
-#[derive(Clone)]
-pub struct DepthFirst(GraphicsPipeline);
+pub struct DepthFirst {
+    pipeline: GraphicsPipeline,
+    format: vk::Format,
+}
 
 impl DepthFirst {
-    /// Makes its pipeline.
-    pub fn new(context: &Context) -> Result<Self, GpuError> {
+    /// Makes its pipeline, for depth of a format.
+    pub fn new(context: &Context, format: vk::Format) -> Result<Self, GpuError> {
         let attribute = |location, format| [VertexAttribute { location, format, offset: 0 }];
         let position = attribute(0, vk::Format::R32G32B32_SFLOAT);
         let texture_coordinates = attribute(1, vk::Format::R32G32_SFLOAT);
@@ -44,11 +45,11 @@ impl DepthFirst {
             topology: vk::PrimitiveTopology::TRIANGLE_LIST,
             cull: vk::CullModeFlags::NONE,
             front_face: vk::FrontFace::COUNTER_CLOCKWISE,
-            depth: Some(DepthState { format: DEPTH, compare: vk::CompareOp::LESS_OR_EQUAL, write: true }),
+            depth: Some(DepthState { format, compare: vk::CompareOp::LESS_OR_EQUAL, write: true }),
             colors: &[],
             blend: Blend::None,
         })?;
-        Ok(Self(pipeline))
+        Ok(Self { pipeline, format })
     }
 
     /// Adds the pass; surfaces with holes, which only their fragments know, are left to the draw.
@@ -64,9 +65,9 @@ impl DepthFirst {
         posed.iter().for_each(|posed| {
             pass.read(&posed.positions, Access::VertexBuffer);
         });
-        let desc = ImageDesc::new_2d(size[0], size[1], DEPTH);
+        let desc = ImageDesc::new_2d(size[0], size[1], self.format);
         let depth = pass.create_image("depth", desc, Access::DepthAttachmentWrite);
-        let (pipeline, scene, view) = (self.0.clone(), Arc::clone(scene), view.clone());
+        let (pipeline, scene, view) = (self.pipeline.clone(), Arc::clone(scene), view.clone());
         pass.record(Box::new(move |recorder, resources| {
             let target = resources.view(&depth)?;
             recorder.begin_rendering(&Rendering {

@@ -188,7 +188,7 @@ impl Pipelines {
             ambient,
             fogged: fogged.map(in_fog).transpose()?,
             mapped: mapped.iter().map(with_map).collect::<Result<_, _>>()?,
-            depth_first: (!mapped.is_empty()).then(|| DepthFirst::new(context)).transpose()?,
+            depth_first: (!mapped.is_empty()).then(|| DepthFirst::new(context, DEPTH)).transpose()?,
             sky: SkyPipelines::new(context, hdr)?,
             develop: context.create_compute_pipeline(&ComputePipelineDesc {
                 name: "develop",
