@@ -165,7 +165,7 @@ fn a_pass_left_out_has_no_time_in_the_frame_and_no_memory() {
             ["-o", "out.exr", "--samples", "1", "--frames", "4", "--size", "32x18", "--stat", "stat.json"];
         let scene = stage.write(mesh, &[FAR, medium, LAMP, BALL]);
         stage.airglow("render", &scene, &[&drawn, more].concat());
-        serde_json::from_slice(&std::fs::read(stage.0.path().join("stat.json")).unwrap()).unwrap()
+        serde_json::from_slice(&std::fs::read(stage.folder.path().join("stat.json")).unwrap()).unwrap()
     };
     let timed = |stat: &Value, room: &str| {
         let mut rows = stat["passes"].as_array().unwrap().iter();
