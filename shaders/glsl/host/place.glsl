@@ -38,7 +38,7 @@ layout(location = 13) in vec3 incident_8;
 #endif
 
 // A depth drawn ahead is that of the draw, to the bit.
-invariant gl_Position;
+precise gl_Position;
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec3 out_light;

@@ -18,21 +18,27 @@
 shared Seen tile_seen[LANES];
 shared uint tile_mask[2];
 
+// A corner of a triangle as seen from a point.
+Corner tile_corner(vec3 point, uint index, int k)
+{
+    vec3 place = triangles[index].corners[k].xyz;
+    Corner corner;
+    [[unroll]] for (int i = 0; i < 3; ++i) { corner.axes[i] = exact_sum(place[i], -point[i]); }
+    return corner;
+}
+
 // Whether a ray that passes an edge within rounding hits: as the numbers of the buffers have it, not what is left of them.
+// Edges one after another: three copies of the code would take drivers longer to compile than rays ever take.
 bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
 {
-    Triangle triangle = triangles[seen.name - 1u];
-    Corner corners[3];
-    for (int k = 0; k < 3; ++k) {
-        vec3 corner = triangle.corners[k].xyz;
-        for (int i = 0; i < 3; ++i) { corners[k].axes[i] = exact_sum(corner[i], -point[i]); }
-    }
     // Whole numbers, since rays lie at multiples of 1 / (RAYS rays).
     ivec2 middle = 2 * (tile.first + ray) + 1 - tile.rays;
     vec3 way = face_world(tile.face, vec3(RAYS * middle + tile_shear(tile, ray), RAYS * tile.rays));
     bool inside = true;
-    for (int k = 0; k < 3; ++k) {
-        float side = exact_side(way, corners[(k + 1) % 3], corners[(k + 2) % 3]);
+    [[dont_unroll]] for (int k = 0; k < 3; ++k) {
+        Corner from = tile_corner(point, seen.name - 1u, (k + 1) % 3);
+        Corner to = tile_corner(point, seen.name - 1u, (k + 2) % 3);
+        float side = exact_side(way, from, to);
         // Coordinates of a face mirror the world.
         inside = inside && seen.side * side <= 0.0;
     }

@@ -94,6 +94,7 @@ fn mend_tangents(item: &str, mesh: &mut Mesh, normal_mapped: bool, warnings: &mu
             warnings.add(item, "the normal texture has no effect: the mesh has no texture coordinates");
         } else if normal_mapped {
             mesh.tangents = generate(mesh);
+            warnings.add(item, "tangents generated from the texture coordinates: the file has none");
         }
         return;
     }

