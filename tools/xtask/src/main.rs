@@ -41,7 +41,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Compile shaders/glsl/manifest.toml into shaders/spirv, and write the table of `portability`
+    /// Compile what the manifests in shaders/glsl/* list into shaders/spirv, and write the table of `portability`
     Shaders {
         /// Write nothing; fail with a list when the committed SPIR-V differs from a fresh compile
         #[arg(long)]
@@ -89,7 +89,7 @@ enum Command {
 
 /// The workspace around the current folder; elsewhere, the one this command was built in.
 fn workspace() -> PathBuf {
-    let is_workspace = |folder: &&Path| folder.join("shaders/glsl/manifest.toml").is_file();
+    let is_workspace = |folder: &&Path| folder.join("shaders/glsl/common").is_dir();
     let current = std::env::current_dir().unwrap_or_default();
     let built_in = Path::new(env!("CARGO_MANIFEST_DIR"));
     let around = current.ancestors().find(is_workspace).or_else(|| built_in.ancestors().nth(2));

@@ -1,4 +1,4 @@
-//! The shader manifest: entry points and the permutations of their defines.
+//! The shader manifests, one in each folder: entry points and the permutations of their defines.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -73,17 +73,45 @@ impl Value {
     }
 }
 
-/// Reads a manifest and lists its modules in the order of the file, defines in alphabetical order.
+/// The manifests of the folders right below the GLSL root, in the order of their names.
 ///
 /// # Errors
-/// Malformed TOML, an unknown extension, a source outside a room, and two modules with one name are refused.
-pub fn read(path: &Path) -> Result<Vec<Module>, Error> {
+/// The operating system's answer, with the path.
+pub fn files(glsl: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(glsl).map_err(|source| Error::io(glsl, source))? {
+        let file = entry.map_err(|source| Error::io(glsl, source))?.path().join("manifest.toml");
+        if file.is_file() {
+            files.push(file);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Reads all manifests below the GLSL root and lists their modules: in the order of the folders' names and of each file,
+/// defines in alphabetical order.
+///
+/// # Errors
+/// Malformed TOML, an unknown extension, a source outside the manifest's folder, and two modules with one name are refused.
+pub fn read(glsl: &Path) -> Result<Vec<Module>, Error> {
+    let folders: Result<Vec<_>, _> = files(glsl)?.iter().map(|path| read_file(path)).collect();
+    Ok(folders?.concat())
+}
+
+fn read_file(path: &Path) -> Result<Vec<Module>, Error> {
     let text = std::fs::read_to_string(path).map_err(|source| Error::io(path, source))?;
     let refuse = |message: String| Error::Manifest { path: path.to_owned(), message };
     let document: Document = toml::from_str(&text).map_err(|error| refuse(error.to_string()))?;
     let mut modules: Vec<Module> = Vec::new();
     for entry in &document.entry {
         for module in expand(entry).map_err(refuse)? {
+            if path.parent().and_then(Path::file_name).is_none_or(|folder| folder != module.room()) {
+                return Err(refuse(format!(
+                    "{} lies in another folder, whose manifest names it",
+                    entry.file
+                )));
+            }
             if modules.iter().any(|other| other.output == module.output) {
                 return Err(refuse(format!(
                     "two modules would be named {}; give one of the entries another `name`",

@@ -45,7 +45,7 @@ fn write(path: &Path, text: &str) -> Result<(), Error> {
 /// What naga makes of the modules that are asked for.
 fn translated(workspace: &Path, asked: impl Fn(&Module) -> bool) -> Result<Vec<Row>, Error> {
     let spirv = workspace.join("shaders/spirv");
-    let mut modules = manifest::read(&workspace.join("shaders/glsl/manifest.toml"))?;
+    let mut modules = manifest::read(&workspace.join("shaders/glsl"))?;
     modules.retain(asked);
     // A panic that is caught becomes a cell of the table; its message on the terminal would look like a failure.
     let hook = std::panic::take_hook();

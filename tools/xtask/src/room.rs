@@ -9,10 +9,10 @@ use std::process::Command;
 
 use crate::error::Error;
 use crate::room_lines::Place;
-use crate::{files, header, portability, room_lines, shaders};
+use crate::{files, header, manifest, portability, room_lines, shaders};
 
 /// Where each file of a room lies, and its text. `__room__` stands for the room's name, `__Room__` for that of its type.
-const TEMPLATE: [(&str, &str); 13] = [
+const TEMPLATE: [(&str, &str); 14] = [
     ("passes/__room__/Cargo.toml", include_str!("../template/Cargo.toml.template")),
     ("passes/__room__/README.md", include_str!("../template/README.md")),
     ("passes/__room__/src/lib.rs", include_str!("../template/src/lib.rs")),
@@ -26,6 +26,7 @@ const TEMPLATE: [(&str, &str); 13] = [
     ("passes/__room__/tests/plans/expose.txt", include_str!("../template/tests/plans/expose.txt")),
     ("passes/__room__/tests/gpu.rs", include_str!("../template/tests/gpu.rs")),
     ("shaders/glsl/__room__/expose.comp", include_str!("../template/expose.comp")),
+    ("shaders/glsl/__room__/manifest.toml", include_str!("../template/manifest.toml")),
 ];
 
 /// Words that cannot name a module, and packages of this workspace that lie elsewhere.
@@ -90,12 +91,12 @@ pub fn remove(workspace: &Path, name: &str) -> Result<(), Error> {
 /// Removes what other rooms' shaders have of this room: the sources that need both, and their modules.
 fn remove_shared(workspace: &Path, name: &str) -> Result<(), Error> {
     let shaders = workspace.join("shaders");
-    let manifest = shaders.join("glsl/manifest.toml");
-    if !manifest.is_file() {
-        return Ok(());
+    let mut shared = Vec::new();
+    for manifest in manifest::files(&shaders.join("glsl"))? {
+        let text = fs::read_to_string(&manifest).map_err(|source| Error::io(&manifest, source))?;
+        shared.extend(room_lines::shared_shaders(&text, name));
     }
-    let text = fs::read_to_string(&manifest).map_err(|source| Error::io(&manifest, source))?;
-    for (file, entry) in room_lines::shared_shaders(&text, name) {
+    for (file, entry) in shared {
         let source = shaders.join("glsl").join(&file);
         let folder = shaders.join("spirv").join(file.split('/').next().unwrap_or_default());
         let modules = fs::read_dir(&folder).map_err(|source| Error::io(&folder, source))?;

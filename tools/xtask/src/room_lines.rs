@@ -1,11 +1,11 @@
-//! The few lines outside a room's folders that name it: in the workspace, the umbrella, the shader manifest and the
-//! command-line tool.
+//! The few lines outside a room's folders that name it: in the workspace, the umbrella, other rooms' shader
+//! manifests and the command-line tool.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::files;
+use crate::{files, manifest};
 
 /// A file that names rooms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Place {
     Umbrella,
     /// passes/src/lib.rs: a re-export each.
     UmbrellaLibrary,
-    /// The shader manifest: the entries of their shaders.
+    /// The shader manifest of each folder: entries of shaders that need several rooms.
     Shaders,
     /// tools/airglow/Cargo.toml: a feature for each room that the tool uses.
     Tool,
@@ -28,11 +28,10 @@ pub enum Place {
     CapiConformance,
 }
 
-const PLACES: [(Place, &str); 8] = [
+const PLACES: [(Place, &str); 7] = [
     (Place::Workspace, "Cargo.toml"),
     (Place::Umbrella, "passes/Cargo.toml"),
     (Place::UmbrellaLibrary, "passes/src/lib.rs"),
-    (Place::Shaders, "shaders/glsl/manifest.toml"),
     (Place::Tool, "tools/airglow/Cargo.toml"),
     (Place::Capi, "passes/capi/Cargo.toml"),
     (Place::CapiLibrary, "passes/capi/src/lib.rs"),
@@ -47,17 +46,23 @@ pub fn edit(
     workspace: &Path,
     change: impl Fn(Place, &str) -> Option<String>,
 ) -> Result<Vec<(PathBuf, String)>, Error> {
-    let edit = |(place, file): (Place, &str)| {
-        let path = workspace.join(file);
+    let edit = |(place, path): (Place, PathBuf)| {
         let text = fs::read_to_string(&path).map_err(|source| Error::io(&path, source))?;
         let message = "no line of another room to put this room's beside; add it by hand".to_owned();
         let changed = change(place, &text).ok_or_else(|| Error::Manifest { path: path.clone(), message })?;
         Ok((path, changed))
     };
+    places(workspace)?.into_iter().map(edit).collect()
+}
+
+/// All places that there are, and their files.
+fn places(workspace: &Path) -> Result<Vec<(Place, PathBuf)>, Error> {
     // The library for hosts in C is a room, too, and may be gone.
     let present =
         |(_, file): &(Place, &str)| !file.starts_with("passes/capi/") || workspace.join(file).is_file();
-    PLACES.into_iter().filter(present).map(edit).collect()
+    let fixed = PLACES.into_iter().filter(present).map(|(place, file)| (place, workspace.join(file)));
+    let manifests = manifest::files(&workspace.join("shaders/glsl"))?.into_iter();
+    Ok(fixed.chain(manifests.map(|path| (Place::Shaders, path))).collect())
 }
 
 /// Writes what [`edit`] made.
@@ -88,9 +93,10 @@ pub fn add(place: Place, text: &str, name: &str) -> Option<String> {
         Place::UmbrellaLibrary => {
             Some(format!("{text}#[cfg(feature = \"{name}\")]\npub use airglow_{name} as {name};\n"))
         }
-        Place::Shaders => Some(format!("{text}\n[[entry]]\nfile = \"{name}/expose.comp\"\n")),
         // Whoever uses the room there adds its lines.
-        Place::Tool | Place::Capi | Place::CapiLibrary | Place::CapiConformance => Some(text.to_owned()),
+        Place::Shaders | Place::Tool | Place::Capi | Place::CapiLibrary | Place::CapiConformance => {
+            Some(text.to_owned())
+        }
     }
 }
 
@@ -124,9 +130,8 @@ pub fn remove(place: Place, text: &str, name: &str) -> String {
         }
         Place::Shaders => {
             // Entries are paragraphs.
-            let file = format!("file = \"{name}/");
             let is_shared = format!("AIRGLOW_{} = true", name.to_uppercase());
-            let gone = |line: &str| line.starts_with(&file) || line == is_shared;
+            let gone = |line: &str| line == is_shared;
             let kept = text.trim_end().split("\n\n").filter(|entry| !entry.lines().any(gone));
             kept.collect::<Vec<_>>().join("\n\n") + "\n"
         }
@@ -214,13 +219,12 @@ mod tests {
 
     #[test]
     fn removing_what_was_added_gives_each_file_back() {
-        for (place, file) in PLACES {
-            let text = fs::read_to_string(crate::workspace().join(file)).unwrap();
+        for (place, file) in places(&crate::workspace()).unwrap() {
+            let text = fs::read_to_string(&file).unwrap();
             let added = add(place, &text, "anotherroom").unwrap();
-            let by_hand =
-                [Place::Tool, Place::Capi, Place::CapiLibrary, Place::CapiConformance].contains(&place);
-            assert_eq!(added != text, !by_hand, "{file}");
-            assert_eq!(remove(place, &added, "anotherroom"), text, "{file}");
+            let by_template = [Place::Workspace, Place::Umbrella, Place::UmbrellaLibrary].contains(&place);
+            assert_eq!(added != text, by_template, "{}", file.display());
+            assert_eq!(remove(place, &added, "anotherroom"), text, "{}", file.display());
         }
     }
 
@@ -243,11 +247,10 @@ mod tests {
         let expected = "[features]\ndefault = [\"rain\"]\n# Rain.\nrain = []\n";
         assert_eq!(remove(Place::Umbrella, text, "fog"), expected);
         let text =
-            "# All.\n\n# Fog.\n[[entry]]\nfile = \"fog/a.comp\"\n\n[[entry]]\nfile = \"foggy/a.comp\"\n";
-        assert_eq!(remove(Place::Shaders, text, "fog"), "# All.\n\n[[entry]]\nfile = \"foggy/a.comp\"\n");
-        let text =
             "[[entry]]\nfile = \"rain/wet.frag\"\nname = \"drops\"\n[entry.define]\nAIRGLOW_FOG = true\n";
         assert_eq!(remove(Place::Shaders, text, "fog"), "\n");
+        let rest = "# All.\n\n[[entry]]\nfile = \"rain/dry.frag\"\n";
+        assert_eq!(remove(Place::Shaders, &format!("{rest}\n# Both.\n{text}"), "fog"), rest);
         assert_eq!(shared_shaders(text, "fog"), [("rain/wet.frag".to_owned(), "drops".to_owned())]);
         assert!(shared_shaders(text, "rain").is_empty());
         let text = "airglow-fog = 1\nairglow-foggy = 2\n    \"passes/fog\",\n    \"passes/fog/c\",\n    \"passes/foggy\",\n";

@@ -46,12 +46,12 @@ pub fn run(glsl: &Path, spirv: &Path, room: Option<&str>, check: bool) -> Result
     if check && !differences.is_empty() { Err(Error::Stale(differences.len())) } else { Ok(()) }
 }
 
-/// The manifest's modules, of one room when given.
+/// The manifests' modules, of one room when given.
 ///
 /// # Errors
 /// An unreadable manifest, and a room that no entry lies in.
 pub fn modules(glsl: &Path, room: Option<&str>) -> Result<Vec<Module>, Error> {
-    let mut modules = manifest::read(&glsl.join("manifest.toml"))?;
+    let mut modules = manifest::read(glsl)?;
     if let Some(room) = room {
         modules.retain(|module| module.room() == room);
         if modules.is_empty() {
