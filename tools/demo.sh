@@ -45,7 +45,7 @@ size=(--size 640x360)
 "$airglow" render "$scene" "${device[@]}" "${size[@]}" --frames 5 -o out/demo.png --stat out/demo.json
 bare=(--without relight --without radiance --without shadow --without normals --without fog)
 "$airglow" render "$scene" "${device[@]}" "${size[@]}" --frames 1 "${bare[@]}" --split=diagonal -o out/demo-split.png --quiet > /dev/null
-say "a film of it: the lamp goes along its rope, the figure walks, the camera follows"
+say "a film of it: the lamp goes along its rope, the figures walk, the camera follows"
 "$airglow" film "$scene" "${device[@]}" --size 320x180 --frames 12 --step 0.16 --fly 0.4,0.1,1.2 --strip 4 -o out/film --quiet > /dev/null
 if [ -n "$(command -v convert)" ]; then
     convert -delay 12 -loop 0 out/film/frame-*.png -layers optimize out/film/film.gif

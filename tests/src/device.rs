@@ -4,6 +4,7 @@
 //! same bits; `AIRGLOW_TEST_DEVICE` (an index, part of a name, or a kind) chooses another on purpose, and
 //! `AIRGLOW_TEST_VALIDATION=off` does without the layers there, where they are not installed.
 
+use crate::turn::Turn;
 use airglow_conformance::HostDevice;
 use airglow_gpu::ash;
 use airglow_gpu::open::{MessageLog, OpenDevice, OpenOptions, Selector};
@@ -11,6 +12,7 @@ use airglow_gpu::{Context, Requirements};
 use std::convert::Infallible;
 use std::env;
 use std::mem::ManuallyDrop;
+use std::ops::Deref;
 
 /// Chooses another device than llvmpipe.
 const DEVICE: &str = "AIRGLOW_TEST_DEVICE";
@@ -23,8 +25,15 @@ const VALIDATION: &str = "AIRGLOW_TEST_VALIDATION";
 /// Dropping it fails the test if validation said anything.
 pub struct Fixture {
     context: ManuallyDrop<Context>,
-    device: ManuallyDrop<OpenDevice>,
+    device: ManuallyDrop<Opened>,
     messages: MessageLog,
+}
+
+/// An open device, while which no other thread of the process has one.
+pub struct Opened {
+    device: OpenDevice,
+    // Given back when the device is destroyed.
+    _turn: Turn,
 }
 
 /// A fixture for what the device layer alone needs.
@@ -41,8 +50,9 @@ pub fn fixture_with(requirements: &Requirements) -> Fixture {
     Fixture { context: ManuallyDrop::new(context), device: ManuallyDrop::new(device), messages }
 }
 
-/// The device alone, for tests that play a host.
-pub fn open(requirements: &Requirements) -> OpenDevice {
+/// The device alone, for tests that play a host; waits until no other thread has one.
+pub fn open(requirements: &Requirements) -> Opened {
+    let turn = Turn::take();
     let chosen = env::var(DEVICE).ok();
     let Ok::<_, Infallible>(selector) = chosen.as_deref().unwrap_or("llvmpipe").parse::<Selector>();
     let validation = chosen.is_none() || env::var(VALIDATION).as_deref() != Ok("off");
@@ -57,7 +67,7 @@ pub fn open(requirements: &Requirements) -> OpenDevice {
     } else {
         println!("{DEVICE}: {line}, validation {}", if validation { "on" } else { "off" });
     }
-    device
+    Opened { device, _turn: turn }
 }
 
 /// A device on the instance of `open`, its own or another, as a host states it.
@@ -76,6 +86,14 @@ pub fn stated(open: &OpenDevice, device: &ash::Device) -> HostDevice<'static> {
         queue: unsafe { device.get_device_queue(info.queue_family, 0) },
         features: info.features,
         extensions: &["VK_EXT_debug_utils"],
+    }
+}
+
+impl Deref for Opened {
+    type Target = OpenDevice;
+
+    fn deref(&self) -> &OpenDevice {
+        &self.device
     }
 }
 

@@ -15,4 +15,5 @@ pub mod plan;
 pub mod reflect;
 pub mod shim;
 pub mod spirv;
+mod turn;
 pub mod workload;

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use airglow::relight::stability::{self, Reproduce, Selection, Sweep};
 use airglow::relight::{Bench, Relight, Settings};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
@@ -24,6 +24,7 @@ use crate::global::Global;
 use crate::host::device;
 use crate::host::machine::Machine;
 use crate::output::Output;
+use crate::report::pass::Pass;
 use crate::report::sweep::{self, SweepPlot};
 use crate::text::escape;
 use again::Again;
@@ -43,8 +44,8 @@ use again::Again;
   airglow stability relight -o out/stability     the table and the sweeps' plots as a page")]
 pub struct Arguments {
     /// The pass.
-    #[arg(value_enum, default_value_t = Tried::Relight)]
-    pass: Tried,
+    #[arg(value_enum, default_value_t = Pass::Relight)]
+    pass: Pass,
     /// Write `stability.html` with the table and the sweeps' plots, and `stability.json`, into this folder.
     #[arg(long, short = 'o', value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -54,41 +55,6 @@ pub struct Arguments {
     /// Run only the input or the sweep of this name, as the table prints it.
     #[arg(long = "case", value_name = "NAME")]
     case: Option<String>,
-}
-
-/// Passes that can be tried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Tried {
-    /// Relighting by precomputed radiance transfer.
-    Relight,
-    /// Single scattering from lights inside a medium.
-    #[cfg(feature = "fog")]
-    Fog,
-    /// The levels of normal maps as mixtures of lobes.
-    #[cfg(feature = "normals")]
-    Normals,
-    /// Incident radiance of near emitters.
-    #[cfg(feature = "radiance")]
-    Radiance,
-    /// Soft shadows of moving spheres.
-    #[cfg(feature = "shadow")]
-    Shadow,
-}
-
-impl Tried {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Relight => "relight",
-            #[cfg(feature = "fog")]
-            Self::Fog => "fog",
-            #[cfg(feature = "radiance")]
-            Self::Radiance => "radiance",
-            #[cfg(feature = "normals")]
-            Self::Normals => "normals",
-            #[cfg(feature = "shadow")]
-            Self::Shadow => "shadow",
-        }
-    }
 }
 
 #[derive(Serialize)]
@@ -145,15 +111,15 @@ fn point_in_words([at, value, truth, error]: &[f64; 4]) -> String {
 /// Runs the command.
 pub fn run(arguments: &Arguments, global: &Global, output: &Output) -> Outcome {
     let table = match arguments.pass {
-        Tried::Relight => try_relight(arguments, global, output)?,
+        Pass::Relight => try_relight(arguments, global, output)?,
         #[cfg(feature = "fog")]
-        Tried::Fog => fog::attempt(arguments, global, output)?,
+        Pass::Fog => fog::attempt(arguments, global, output)?,
         #[cfg(feature = "radiance")]
-        Tried::Radiance => radiance::attempt(arguments, global, output)?,
+        Pass::Radiance => radiance::attempt(arguments, global, output)?,
         #[cfg(feature = "normals")]
-        Tried::Normals => normals::attempt(arguments, global, output)?,
+        Pass::Normals => normals::attempt(arguments, global, output)?,
         #[cfg(feature = "shadow")]
-        Tried::Shadow => shadow::attempt(arguments, global, output)?,
+        Pass::Shadow => shadow::attempt(arguments, global, output)?,
     };
     if table.rows.is_empty() && table.sweeps.is_empty() {
         let name = arguments.case.as_deref().unwrap_or_default();

@@ -62,6 +62,11 @@ impl Action {
             _ => None,
         }
     }
+
+    /// Whether it is done again and again while its key is held.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Brighter | Self::Darker)
+    }
 }
 
 /// Keys that are held to fly.

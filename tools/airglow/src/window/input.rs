@@ -34,10 +34,13 @@ impl Input {
         height: f32,
     ) -> Option<Action> {
         match event {
-            WindowEvent::KeyboardInput { event, .. } => {
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let pressed = event.state == ElementState::Pressed;
                 self.held.key(event.physical_key, pressed);
-                return Action::of(&event.logical_key).filter(|_| pressed);
+                // A key that was down when the window got the focus is told of, and its press may still be to come.
+                let fresh = pressed && !is_synthetic;
+                return Action::of(&event.logical_key)
+                    .filter(|action| fresh && (!event.repeat || action.repeats()));
             }
             WindowEvent::Focused(false) => self.held = Held::default(),
             WindowEvent::MouseInput { state, button, .. } => {
