@@ -10,7 +10,7 @@ use std::collections::btree_map::Entry;
 
 use airglow::shadow::bench::{Bench, Frame, Scene, SphereKernel};
 use airglow::shadow::reference::{Reference, caps, rms};
-use airglow::shadow::{Cap, Exponential, Settings, Shadow, ShadowError, Sphere};
+use airglow::shadow::{Cap, Exponential, PixelShadow, Settings, Shadow, ShadowError, Sphere};
 use glam::DVec3;
 
 use super::{Arguments, Row, Table};
@@ -26,7 +26,8 @@ const BOUND: f64 = 2e-3;
 /// Runs the inputs and sweeps that were asked for.
 pub(super) fn attempt(arguments: &Arguments, global: &Global, output: &Output) -> Outcome<Table> {
     let only = arguments.case.as_deref();
-    device::with(global, &Shadow::requirements(), |device| {
+    let requirements = Shadow::requirements().and(&PixelShadow::requirements());
+    device::with(global, &requirements, |device| {
         let run = device.bench();
         let bench = Bench { context: device.context(), run: &run };
         let trial = Trial { bench: &bench, passes: RefCell::default(), references: RefCell::default() };

@@ -4,8 +4,11 @@ use airglow::math::sh::{coefficient_count, project};
 use airglow::shadow::eval::{ExponentialRow, exponentials};
 use airglow::shadow::families::Family;
 use airglow::shadow::reference::{caps, truth};
-use airglow::shadow::{Evaluator, Exponential, ShadowError, Sphere};
-use glam::DVec3;
+use airglow::shadow::{
+    Blockers, Evaluator, Exponential, PixelLight, PixelPicture, PixelShadow, Products, Settings, ShadowError,
+    Sphere,
+};
+use glam::{DMat4, DVec3};
 
 use super::super::Row;
 use super::{BOUND, Sky, Trial, again, error, open, row, wanted};
@@ -55,6 +58,7 @@ pub fn rows(trial: &Trial<'_>, only: Option<&str>) -> Result<Vec<Row>, ShadowErr
         rows.extend(overlapping(trial, only, order)?);
         rows.extend(gathered(trial, only, order)?);
         rows.extend(broken(trial, only, order)?);
+        rows.extend(broken_pixels(trial, only, order)?);
         rows.extend(below(trial, only, order)?);
         rows.extend(long_vectors(trial, only, order)?);
         rows.extend(peak(trial, only, order)?);
@@ -138,6 +142,53 @@ fn broken(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Vec<Row
             ),
             format!("open {:.6}, 1, {:.6}", open(&alone), open(&alone[width..])),
             error(&among, &expected),
+            1e-6,
+            again(&name),
+        ));
+    }
+    Ok(rows)
+}
+
+/// A pixel whose position or normal is not finite: no surface, and its neighbours as they are without it.
+fn broken_pixels(trial: &Trial<'_>, only: Option<&str>, order: usize) -> Result<Vec<Row>, ShadowError> {
+    let cases = [
+        ("position is not a number", 0, f32::NAN),
+        ("position is infinite", 0, f32::INFINITY),
+        ("normal is not a number", 1, f32::NAN),
+    ];
+    let name = |kind: &str| format!("a pixel whose {kind}, order {order}");
+    if !cases.iter().any(|(kind, ..)| wanted(only, &name(kind))) {
+        return Ok(Vec::new());
+    }
+    let settings = Settings { order, reach: 0.0, ..Settings::default() };
+    let pass = PixelShadow::new(trial.bench.context, settings)?;
+    let blockers = Blockers::default();
+    let spheres: Vec<Sphere> = (0..20).map(|i| sphere(2.0 + 0.1 * f64::from(i), 1.0)).collect();
+    blockers.set(&spheres, DMat4::IDENTITY)?;
+    let mut light = vec![[0.0; 3]; coefficient_count(order)];
+    light[0] = [(4.0 * std::f64::consts::PI).sqrt(); 3];
+    let (products, picture) = (Products::new(order, &light)?, PixelPicture::Light);
+    let light = PixelLight { products, disc: None, picture };
+    let places: Vec<[f32; 4]> = [0.0, 0.25, 0.5].map(|y| [0.0, y, 0.0, 1.0]).to_vec();
+    let images = [places, vec![[1.0, 0.0, 0.0, 0.0]; 3]];
+    let mut rows = Vec::new();
+    let of = |images: &[Vec<[f32; 4]>; 2]| -> Result<Vec<f64>, ShadowError> {
+        let pixels = trial.bench.pixels(&pass, [3, 1], [&images[0], &images[1]], &blockers, &light)?;
+        Ok(pixels.as_flattened().iter().copied().map(f64::from).collect())
+    };
+    let alone = of(&images)?;
+    for (kind, image, value) in cases.into_iter().filter(|(kind, ..)| wanted(only, &name(kind))) {
+        let name = name(kind);
+        let mut among = images.clone();
+        among[image][1][1] = value;
+        let found = of(&among)?;
+        let expected = [&alone[..4], &[0.0; 4], &alone[8..]].concat();
+        rows.push(row(
+            &name,
+            "the second of three under 20 spheres".to_owned(),
+            format!("light {:.6}, {:.6}, {:.6}", found[0], found[4], found[8]),
+            format!("light {:.6}, 0, {:.6}", alone[0], alone[8]),
+            error(&found, &expected),
             1e-6,
             again(&name),
         ));
