@@ -878,7 +878,7 @@ enum AirglowStorage
    */
   AIRGLOW_STORAGE_F32 = 0,
   /**
-   * 16-bit floats, half the bytes; values up to 65504.
+   * 16-bit floats, half the bytes; values up to 63.96.
    */
   AIRGLOW_STORAGE_F16 = 1,
 };

@@ -3,7 +3,7 @@
 use airglow_gpu::Context;
 
 use crate::RelightError;
-use crate::pack::{Chunk, Layout, VERTEX_ALIGNMENT, chunks};
+use crate::pack::{Chunk, HALF_LIMIT, Layout, VERTEX_ALIGNMENT, chunks};
 use crate::resident::Resident;
 use crate::settings::{Settings, Storage};
 use crate::tables::count_wrong;
@@ -109,9 +109,9 @@ fn check(settings: &Settings, name: &str, vertices: u32, values: &[f32]) -> Resu
     if let Some(found) = count_wrong(values, |value| !value.is_finite()) {
         return refuse("NaN or infinite", found);
     }
-    let past_half = |value: f32| settings.storage == Storage::F16 && value.abs() > half::f16::MAX.to_f32();
+    let past_half = |value: f32| settings.storage == Storage::F16 && value.abs() > HALF_LIMIT;
     if let Some(found) = count_wrong(values, past_half) {
-        return refuse("past 65504, the range of half floats", found);
+        return refuse("past 63.96, the range of vectors in half floats", found);
     }
     Ok(())
 }

@@ -13,6 +13,13 @@ pub const VERTEX_ALIGNMENT: u32 = 64;
 /// constant of the same name in `colour.frag`.
 pub const RECTANGLE_WIDTH: u32 = 1024;
 
+/// Half floats hold vectors in 1/1024: a vertex that sees next to nothing is as near to its light as others, while vectors
+/// of light that is not gained stay far below [`HALF_LIMIT`]. `TRANSFER_UNIT` of `transfer.glsl`.
+const HALF_SCALE: f32 = 1024.0;
+
+/// The largest value of a vector in half floats, all but 64.
+pub(crate) const HALF_LIMIT: f32 = 65504.0 / HALF_SCALE;
+
 /// Format of the packed rectangle: what the vertex buffer holds.
 pub(crate) const RECTANGLE_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
@@ -77,7 +84,7 @@ impl Layout {
                         Storage::F32 => packed[first + i] = value.to_bits(),
                         Storage::F16 => {
                             packed[first + i / 2] |=
-                                u32::from(f16::from_f32(*value).to_bits()) << (16 * (i % 2));
+                                u32::from(f16::from_f32(HALF_SCALE * value).to_bits()) << (16 * (i % 2));
                         }
                     }
                 }
@@ -176,7 +183,7 @@ mod tests {
         };
         match storage {
             Storage::F32 => f32::from_bits(packed[word]),
-            Storage::F16 => f16::from_bits((packed[word] >> (16 * (i % 2))) as u16).to_f32(),
+            Storage::F16 => f16::from_bits((packed[word] >> (16 * (i % 2))) as u16).to_f32() / HALF_SCALE,
         }
     }
 

@@ -1,13 +1,16 @@
 // The vectors baked for the vertices of a chunk: transfer vectors, or static visibility vectors for the incident
 // kernel. They are stored alike.
 //
-// STORAGE_F32, STORAGE_F16 (two halves a word, low half first)
+// STORAGE_F32, STORAGE_F16 (two halves a word, low half first, in units of TRANSFER_UNIT)
 // LAYOUT_PLANES          one word of every vertex after another
 // LAYOUT_VERTICES        one vertex after another, no padding
 // LAYOUT_VERTEX_BLOCKS   one vertex after another, blocks of four coefficients, padded with zeros
 // LAYOUT_BLOCK_PLANES    one block of four coefficients of every vertex after another, padded with zeros
 
 #include "relight/chunk.glsl"
+
+// A half float holds no more than 2^-24 of its unit: vectors of vertices that see next to nothing are smaller.
+#define TRANSFER_UNIT (1.0 / 1024.0)
 
 #define BLOCKS ((COEFFICIENTS + 3) / 4)
 #if defined(LAYOUT_VERTEX_BLOCKS) || defined(LAYOUT_BLOCK_PLANES)
@@ -45,7 +48,7 @@ vec4 transfer_block(uint vertex, uint block)
 #ifdef BLOCKED
     TRANSFER_WORD word = transfer.words[WORD_INDEX(vertex, block)];
 #ifdef STORAGE_F16
-    return vec4(unpackHalf2x16(word.x), unpackHalf2x16(word.y));
+    return TRANSFER_UNIT * vec4(unpackHalf2x16(word.x), unpackHalf2x16(word.y));
 #else
     return word;
 #endif
@@ -60,7 +63,7 @@ vec4 transfer_block(uint vertex, uint block)
     uint first = 2u * block;
     vec4 result = vec4(unpackHalf2x16(transfer.words[WORD_INDEX(vertex, first)]), 0.0, 0.0);
     if (first + 1u < uint(WORDS)) { result.zw = unpackHalf2x16(transfer.words[WORD_INDEX(vertex, first + 1u)]); }
-    return result;
+    return TRANSFER_UNIT * result;
 #endif
 }
 
@@ -73,6 +76,6 @@ float transfer_coefficient(uint vertex, uint index)
     return transfer.words[WORD_INDEX(vertex, index)];
 #else
     vec2 pair = unpackHalf2x16(transfer.words[WORD_INDEX(vertex, index / 2u)]);
-    return (index % 2u) == 0u ? pair.x : pair.y;
+    return TRANSFER_UNIT * ((index % 2u) == 0u ? pair.x : pair.y);
 #endif
 }

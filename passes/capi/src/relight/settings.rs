@@ -13,7 +13,7 @@ use crate::status::{AirglowError, AirglowStatus, Failure, edge};
 pub enum AirglowStorage {
     /// 32-bit floats.
     F32 = 0,
-    /// 16-bit floats, half the bytes; values up to 65504.
+    /// 16-bit floats, half the bytes; values up to 63.96.
     F16 = 1,
 }
 
