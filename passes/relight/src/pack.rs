@@ -13,8 +13,8 @@ pub const VERTEX_ALIGNMENT: u32 = 64;
 /// constant of the same name in `colour.frag`.
 pub const RECTANGLE_WIDTH: u32 = 1024;
 
-/// Half floats hold vectors in 1/1024: a vertex that sees next to nothing is as near to its light as others, while vectors
-/// of light that is not gained stay far below [`HALF_LIMIT`]. `TRANSFER_UNIT` of `transfer.glsl`.
+/// What vectors are multiplied with before they become half floats, whose steps below 6e-5 no longer shrink with the value: a
+/// vertex that sees next to nothing then errs no more than others. Divided out by `TRANSFER_UNIT` of `transfer.glsl`.
 const HALF_SCALE: f32 = 1024.0;
 
 /// The largest value of a vector in half floats, all but 64.

@@ -9,7 +9,7 @@
 
 #include "relight/chunk.glsl"
 
-// A half float holds no more than 2^-24 of its unit: vectors of vertices that see next to nothing are smaller.
+// The finest step of a half float is 2^-24: too coarse, in units of 1, for vertices that see next to nothing.
 #define TRANSFER_UNIT (1.0 / 1024.0)
 
 #define BLOCKS ((COEFFICIENTS + 3) / 4)

@@ -1,8 +1,8 @@
-//! The passes that can be measured, and the scene that shows each.
+//! The passes that can be measured and tried, and the scene that shows each.
 
 use clap::ValueEnum;
 
-/// Passes that can be measured.
+/// Passes that can be measured, and tried on extreme inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Pass {
     /// Relighting by precomputed radiance transfer.
