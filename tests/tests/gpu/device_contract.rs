@@ -12,15 +12,18 @@ use airglow_graph::{Access, BufferDesc, Graph, PassKind, State};
 use airglow_tests::colours::{self, BYTES, STORAGE, storage};
 use airglow_tests::compare::assert_same_bits;
 use airglow_tests::device::{fixture, open};
+use std::cell::Cell;
 use std::ffi::{CStr, c_char};
-use std::sync::OnceLock;
 
 fn error<T>(result: Result<T, GpuError>) -> String {
     result.err().expect("this must be refused").to_string()
 }
 
-/// The device's true function, for [`without_dispatch_indirect`].
-static DEVICE_PROC_ADDR: OnceLock<vk::PFN_vkGetDeviceProcAddr> = OnceLock::new();
+thread_local! {
+    /// The true function of the device that this thread's test has open. Not kept longer: the loader may be unloaded with
+    /// its last instance, and come back at another address.
+    static DEVICE_PROC_ADDR: Cell<Option<vk::PFN_vkGetDeviceProcAddr>> = const { Cell::new(None) };
+}
 
 /// A host's get-proc-addr that does not know one function.
 unsafe extern "system" fn without_dispatch_indirect(
@@ -62,7 +65,7 @@ unsafe extern "system" fn extension_names_only(
 #[test]
 fn functions_are_found_by_the_names_of_their_extensions() {
     let device = open(&Requirements::engine());
-    DEVICE_PROC_ADDR.get_or_init(|| device.instance().fp_v1_0().get_device_proc_addr);
+    DEVICE_PROC_ADDR.set(Some(device.instance().fp_v1_0().get_device_proc_addr));
     for (api_version, named) in [(vk::API_VERSION_1_2, true), (vk::API_VERSION_1_3, false)] {
         let mut extensions = Vec::new();
         let info = device.adopt_info(&mut extensions, 2);
@@ -125,7 +128,7 @@ fn adopting_names_what_is_missing() {
     let message = error(adopt(&|info| info.frames_in_flight = 0));
     assert!(message.contains("frames_in_flight"), "{message}");
 
-    DEVICE_PROC_ADDR.get_or_init(|| device.instance().fp_v1_0().get_device_proc_addr);
+    DEVICE_PROC_ADDR.set(Some(device.instance().fp_v1_0().get_device_proc_addr));
     let message = error(adopt(&|info| info.get_device_proc_addr = Some(without_dispatch_indirect)));
     assert!(message.contains("returned null for vkCmdDispatchIndirect"), "{message}");
     assert!(device.messages().take().is_empty(), "adopting and refusing leaves validation silent");
