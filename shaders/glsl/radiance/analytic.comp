@@ -118,6 +118,6 @@ void main()
         vec3 glow = spheres[sphere].radiance.rgb;
         if (emits(glow)) { sphere_sums(spheres[sphere].place.xyz - point, spheres[sphere].place.w, glow, sums); }
     }
-    if (lane == 0u && exact) { sums[LIGHT_EXTENT].z = EXACT; }
+    if (lane == 0u && exact) { sums[SUMS_FOUND].w = EXACT; }
     sums_write(sums, lane, settings.keep == 0u || SAMPLE_LIGHT(uint(LIGHT_EXTENT)).z < KEPT);
 }

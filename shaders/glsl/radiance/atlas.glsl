@@ -8,7 +8,15 @@
 #include "radiance/face.glsl"
 #include "radiance/tile.glsl"
 
-bool tile_find(Tile tile, vec3 point, uint triangle_count)
+// 1 where any ray sees anything.
+shared uint tile_met;
+
+uint tile_begin(vec3 point, uint triangle_count)
+{
+    return 0u;
+}
+
+bool tile_find(Tile tile, vec3 point, uint triangle_count, uint faces, out Block block)
 {
     uint lane = gl_LocalInvocationIndex;
     uint face = 6u * gl_WorkGroupID.x + tile.face;
@@ -16,7 +24,7 @@ bool tile_find(Tile tile, vec3 point, uint triangle_count)
     if (lane == 0u) { tile_met = 0u; }
     barrier();
     for (int i = 0; i < BLOCK * BLOCK; ++i) {
-        ivec2 ray = BLOCK * ivec2(lane % 8u, lane / 8u) + ivec2(i % BLOCK, i / BLOCK);
+        ivec2 ray = tile_block(lane) + ivec2(i % BLOCK, i / BLOCK);
         bool inside = max(tile.first.x + ray.x, tile.first.y + ray.y) < tile.rays;
         uint name = inside ? uint(texelFetch(atlas, corner + ray, 0).r) : 0u;
         float nearness = 0.0;
@@ -29,8 +37,8 @@ bool tile_find(Tile tile, vec3 point, uint triangle_count)
             nearness = max(face_product(face_plane(a, b, c, side), tile_at(tile, ray)), 0.0);
             tile_met = 1u;
         }
-        tile_nearness[ray.y * TILE + ray.x] = floatBitsToUint(nearness);
-        tile_name[ray.y * TILE + ray.x] = nearness > 0.0 ? name : 0u;
+        block.nearness[i] = nearness;
+        block.names[i] = nearness > 0.0 ? name : 0u;
     }
     barrier();
     bool met = tile_met != 0u;

@@ -98,10 +98,10 @@ float face_product(vec3 edge, vec2 at)
     return product;
 }
 
-// The least product of a ray with an edge: 0 or more where it hits.
-float face_least(Seen seen, vec2 at)
+// The least product of a ray with the edges: 0 or more where it hits.
+float face_least(vec3 edges[3], vec2 at)
 {
-    return min(face_product(seen.edges[0], at), min(face_product(seen.edges[1], at), face_product(seen.edges[2], at)));
+    return min(face_product(edges[0], at), min(face_product(edges[1], at), face_product(edges[2], at)));
 }
 
 #endif

@@ -170,12 +170,13 @@ void polygon_sums(vec3 a, vec3 b, vec3 c, vec3 radiance, out vec4 sums[ELEMENTS]
         nearness = min(nearness, MOST_NEARNESS * solid_angle);
         sums[0].rgb = 0.282094791773878 * solid_angle * radiance;
         [[unroll]] for (int i = 1; i < COEFFICIENTS; ++i) { sums[i].rgb = polygon.integrals[i] * power; }
-        sums[LIGHT_EXTENT].xy = vec2(solid_angle, nearness);
-        sums[LIGHT_SLOPE].rgb = nearness * radiance;
+        sums[SUMS_SOLID_ANGLE].w = solid_angle;
+        sums[SUMS_NEARNESS].w = nearness;
+        [[unroll]] for (int k = 0; k < 3; ++k) { sums[SUMS_SLOPE + k].w = nearness * radiance[k]; }
 #if GRADIENTS
         [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) {
             [[unroll]] for (int k = 0; k < 3; ++k) {
-                sums[LIGHT_STRIDE + 3 * i + k].rgb = polygon.gradients[i][k] * power;
+                sums[COEFFICIENTS + 3 * i + k].rgb = polygon.gradients[i][k] * power;
             }
         }
 #endif

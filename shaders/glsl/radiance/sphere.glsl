@@ -93,13 +93,14 @@ void sphere_sums(vec3 centre, float radius, vec3 radiance, out vec4 sums[ELEMENT
             sums[i].rgb = factor * basis[i] * radiance;
 #if GRADIENTS
             vec3 moved = (change * basis[i] * cap.axis - factor * slopes[i]) / far;
-            [[unroll]] for (int k = 0; k < 3; ++k) { sums[LIGHT_STRIDE + 3 * i + k].rgb = moved[k] * radiance; }
+            [[unroll]] for (int k = 0; k < 3; ++k) { sums[COEFFICIENTS + 3 * i + k].rgb = moved[k] * radiance; }
 #endif
         }
     }
     float nearness = cap_nearness(cap.sine) / far;
-    sums[LIGHT_EXTENT].xy = vec2(solid_angle, nearness);
-    sums[LIGHT_SLOPE].rgb = nearness * radiance;
+    sums[SUMS_SOLID_ANGLE].w = solid_angle;
+    sums[SUMS_NEARNESS].w = nearness;
+    [[unroll]] for (int k = 0; k < 3; ++k) { sums[SUMS_SLOPE + k].w = nearness * radiance[k]; }
 }
 
 #endif

@@ -11,7 +11,14 @@
 #include "radiance/slope.glsl"
 
 #define LANES 64
-#define ELEMENTS (LIGHT_STRIDE + GRADIENTS * GRADIENT_STRIDE)
+#define ELEMENTS (COEFFICIENTS + GRADIENTS * GRADIENT_STRIDE)
+
+// What else is summed, in the fourth components of the first elements.
+#define SUMS_SOLID_ANGLE 0
+#define SUMS_NEARNESS 1
+#define SUMS_FOUND 2
+#define SUMS_SLOPE 3 // RGB
+#define SUMS_SCALARS 6
 
 // What a texel sends, means over its rays.
 struct Texel {
@@ -42,8 +49,9 @@ void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
     vec3 power = texel.solid_angle * texel.radiance;
     vec3 slope = texel.solid_angle * texel.slope;
     [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) { sums[i].rgb += basis[i] * power; }
-    sums[LIGHT_EXTENT].xy += texel.solid_angle * vec2(texel.covered, texel.nearness);
-    sums[LIGHT_SLOPE].rgb += slope;
+    sums[SUMS_SOLID_ANGLE].w += texel.solid_angle * texel.covered;
+    sums[SUMS_NEARNESS].w += texel.solid_angle * texel.nearness;
+    [[unroll]] for (int k = 0; k < 3; ++k) { sums[SUMS_SLOPE + k].w += slope[k]; }
 #if GRADIENTS
     vec3 slopes[COEFFICIENTS];
     sh_slopes(texel.direction, basis, slopes);
@@ -54,7 +62,7 @@ void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
     }
     [[unroll]] for (int i = 0; i < COEFFICIENTS; ++i) {
         [[unroll]] for (int k = 0; k < 3; ++k) {
-            sums[LIGHT_STRIDE + 3 * i + k].rgb += basis[i] * change[k] - slopes[i][k] * slope;
+            sums[COEFFICIENTS + 3 * i + k].rgb += basis[i] * change[k] - slopes[i][k] * slope;
         }
     }
 #endif
@@ -64,6 +72,14 @@ void sums_add(Texel texel, inout vec4 sums[ELEMENTS])
 #define SUMS_BLOCK 16
 #define SUMS_RUNS (LANES / SUMS_BLOCK)
 shared vec4 sums_block[SUMS_BLOCK * LANES];
+
+// The sum of an element whose runs are summed.
+vec4 sums_total(uint element)
+{
+    vec4 total = sums_block[element * SUMS_RUNS];
+    for (uint i = 1u; i < SUMS_RUNS; ++i) { total += sums_block[element * SUMS_RUNS + i]; }
+    return total;
+}
 
 // Writes the sample, if it is wanted. The same order of additions every time: runs of neighbouring lanes, then the runs.
 void sums_write(vec4 sums[ELEMENTS], uint lane, bool wanted)
@@ -84,12 +100,17 @@ void sums_write(vec4 sums[ELEMENTS], uint lane, bool wanted)
         barrier();
         uint index = uint(first) + lane;
         if (wanted && lane < SUMS_BLOCK && index < uint(ELEMENTS)) {
-            total = sums_block[lane * SUMS_RUNS];
-            for (uint i = 1u; i < SUMS_RUNS; ++i) { total += sums_block[lane * SUMS_RUNS + i]; }
-            if (index < uint(LIGHT_STRIDE)) { SAMPLE_LIGHT(index) = total; }
+            vec4 value = vec4(sums_total(lane).rgb, 0.0);
+            if (index < uint(COEFFICIENTS)) { SAMPLE_LIGHT(index) = value; }
 #if GRADIENTS
-            else { SAMPLE_GRADIENT(index - uint(LIGHT_STRIDE)) = total; }
+            else { SAMPLE_GRADIENT(index - uint(COEFFICIENTS)) = value; }
 #endif
+        }
+        for (bool scalars = wanted && index == 0u; scalars; scalars = false) {
+            float values[SUMS_SCALARS];
+            for (uint i = 0u; i < uint(SUMS_SCALARS); ++i) { values[i] = sums_total(i).w; }
+            SAMPLE_LIGHT(uint(LIGHT_EXTENT)) = vec4(values[0], values[1], values[2], 0.0);
+            SAMPLE_LIGHT(uint(LIGHT_SLOPE)) = vec4(values[3], values[4], values[5], 0.0);
         }
         barrier();
     }

@@ -81,8 +81,8 @@ vec3 shown_radiance(Tile tile, vec3 point, uint index, vec2 at, float depth)
     return surface_radiance(surface, place, log2(max(surface.last.z * tile.side * depth, 1e-30)));
 }
 
-// Means over the rays of a texel, from its first on. Triangles without radiance hide others, and are not there otherwise.
-Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
+// Means over the rays of a texel, of which `first` is the first in the tile and `block` has what they see. Triangles without radiance hide others, and are not there otherwise.
+Texel texel_of(Tile tile, vec3 point, Block block, ivec2 first, float solid_angle)
 {
     Texel texel;
     texel.solid_angle = solid_angle / float(RAYS * RAYS);
@@ -101,8 +101,9 @@ Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
     uint name = 0u;
     for (int i = 0; i < RAYS * RAYS; ++i) {
         ivec2 ray = first + ivec2(i % RAYS, i / RAYS);
-        int place = ray.y * TILE + ray.x;
-        uint next = tile_name[place];
+        ivec2 within = ray & (BLOCK - 1);
+        int place = within.y * BLOCK + within.x;
+        uint next = block.names[place];
         // A loop, not a branch: software drivers run through a branch that nobody takes. Neighbours see the same triangle.
         for (; name != next; name = next) {
             Triangle triangle = triangles[max(next, 1u) - 1u];
@@ -115,7 +116,7 @@ Texel texel_of(Tile tile, vec3 point, ivec2 first, float solid_angle)
 #endif
         }
         vec2 at = tile_at(tile, ray);
-        float along = uintBitsToFloat(tile_nearness[place]);
+        float along = block.nearness[place];
         for (bool shown = next > settings.shown_first && next <= settings.shown_first + settings.shown_count; shown; shown = false) {
             radiance = shown_radiance(tile, point, next - 1u, at, 1.0 / along);
         }
@@ -153,19 +154,21 @@ void main()
     float side = 2.0 / float(settings.size * uint(RAYS));
     vec4 sums[ELEMENTS];
     sums_clear(sums);
+    uint faces = tile_begin(point, settings.triangle_count);
     bool wanted = settings.keep_exact == 0u || SAMPLE_LIGHT(uint(LIGHT_EXTENT)).z == 0.0;
     uint tile_count = wanted ? 6u * tiles * tiles : 0u;
     for (uint number = 0u; number < tile_count; ++number) {
         uvec2 corner = uvec2(number % tiles, number / tiles % tiles);
         vec2 low = float(TILE) * side * vec2(corner) - 1.0;
         Tile tile = Tile(number / (tiles * tiles), low, side, TILE * ivec2(corner), int(settings.size) * RAYS);
-        bool met = tile_find(tile, point, settings.triangle_count);
+        Block block;
+        bool met = tile_find(tile, point, settings.triangle_count, faces, block);
         for (uint i = 0u; i < (met ? uint(TEXELS * TEXELS) : 0u); ++i) {
-            ivec2 place = TEXELS * ivec2(lane % 8u, lane / 8u) + ivec2(i % uint(TEXELS), i / uint(TEXELS));
+            ivec2 place = tile_block(lane) / RAYS + ivec2(i % uint(TEXELS), i / uint(TEXELS));
             uvec2 texel = tile_texels * corner + uvec2(place);
             bool inside = max(texel.x, texel.y) < settings.size;
             float solid_angle = inside ? solid_angles[texel.y * settings.size + texel.x] : 0.0;
-            Texel seen = texel_of(tile, point, RAYS * place, solid_angle);
+            Texel seen = texel_of(tile, point, block, RAYS * place, solid_angle);
             for (bool lit = seen.covered > 0.0; lit; lit = false) { sums_add(seen, sums); }
         }
     }

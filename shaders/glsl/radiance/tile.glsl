@@ -7,11 +7,18 @@
 
 #define TILE (8 * BLOCK) // rays along a side
 
-// Of each ray: bits of the nearness, length of the ray over distance, and the name of the triangle; 0 for none.
-shared uint tile_nearness[TILE * TILE];
-shared uint tile_name[TILE * TILE];
-// 1 where any ray may see anything.
-shared uint tile_met;
+// What the rays of an invocation's block see, row by row: nearness, length of the ray over distance, and the name of the
+// triangle, 1 and its place in the buffer; 0 for none.
+struct Block {
+    float nearness[BLOCK * BLOCK];
+    uint names[BLOCK * BLOCK];
+};
+
+// The first ray of an invocation's block.
+ivec2 tile_block(uint lane)
+{
+    return BLOCK * ivec2(lane % 8u, lane / 8u);
+}
 
 // A tile of a face: where it begins, and how wide its rays are.
 struct Tile {

@@ -14,9 +14,16 @@
 // The most rays that a triangle is cast through by one invocation. Of 0, 4, 8 and 16 it takes the least time.
 #define FEW 16
 
-// Triangles that all invocations try, of LANES gathered at a time.
+// Triangles that all invocations try, of LANES gathered at a time, and the rays that may meet them, a byte a number.
 shared Seen tile_seen[LANES];
+shared uint tile_spans[LANES];
 shared uint tile_mask[2];
+// Of each ray: bits of the nearness and the name of what one invocation cast. Zero between tiles.
+shared uint tile_nearness[TILE * TILE];
+shared uint tile_name[TILE * TILE];
+// 1 where any ray may see anything, and where anything was cast.
+shared uint tile_met;
+shared uint tile_any_cast;
 
 // A corner of a triangle as seen from a point.
 Corner tile_corner(vec3 point, uint index, int k)
@@ -29,18 +36,18 @@ Corner tile_corner(vec3 point, uint index, int k)
 
 // Whether a ray that passes an edge within rounding hits: as the numbers of the buffers have it, not what is left of them.
 // Edges one after another: three copies of the code would take drivers longer to compile than rays ever take.
-bool tile_decides(Tile tile, vec3 point, Seen seen, ivec2 ray)
+bool tile_decides(Tile tile, vec3 point, uint name, float turn, ivec2 ray)
 {
     // Whole numbers, since rays lie at multiples of 1 / (RAYS rays).
     ivec2 middle = 2 * (tile.first + ray) + 1 - tile.rays;
     vec3 way = face_world(tile.face, vec3(RAYS * middle + tile_shear(tile, ray), RAYS * tile.rays));
     bool inside = true;
     [[dont_unroll]] for (int k = 0; k < 3; ++k) {
-        Corner from = tile_corner(point, seen.name - 1u, (k + 1) % 3);
-        Corner to = tile_corner(point, seen.name - 1u, (k + 2) % 3);
+        Corner from = tile_corner(point, name - 1u, (k + 1) % 3);
+        Corner to = tile_corner(point, name - 1u, (k + 2) % 3);
         float side = exact_side(way, from, to);
         // Coordinates of a face mirror the world.
-        inside = inside && seen.side * side <= 0.0;
+        inside = inside && turn * side <= 0.0;
     }
     return inside;
 }
@@ -62,110 +69,195 @@ ivec4 tile_span(Tile tile, vec3 a, vec3 b, vec3 c)
     return least > 1e-30 ? ivec4(ceil(first), floor(last)) : all_;
 }
 
-// Casts a triangle through the rays of a span. First the nearest is found among all that are cast at once, then its name:
-// of names that are as near the last, for an order that no scheduling changes.
-void tile_cast(Tile tile, vec3 point, Seen seen, ivec4 span, uint count, bool named)
+// The ray of a span after `ray`, row by row.
+ivec2 tile_next(ivec4 span, ivec2 ray)
 {
+    bool ends = ray.x == span.z;
+    return ends ? ivec2(span.x, ray.y + 1) : ivec2(ray.x + 1, ray.y);
+}
+
+uint tile_nearness_of(Tile tile, Seen seen, ivec2 ray)
+{
+    return floatBitsToUint(max(face_product(seen.plane, tile_at(tile, ray)), 0.0));
+}
+
+// Casts a triangle through the first rays of a span, and keeps the nearest of all that are cast at once. A bit for each ray
+// that hits.
+uint tile_cast(Tile tile, vec3 point, Seen seen, ivec4 span, uint count)
+{
+    uint hits = 0u;
     ivec2 ray = span.xy;
     for (uint i = 0u; i < count; ++i) {
-        vec2 at = tile_at(tile, ray);
-        float least = face_least(seen, at);
+        float least = face_least(seen.edges, tile_at(tile, ray));
         bool hit = least >= 0.0;
-        // A loop, not a branch: software drivers run through a branch that nobody takes.
-        for (bool close = abs(least) < FACE_CLOSE; close; close = false) { hit = tile_decides(tile, point, seen, ray); }
-        uint nearness = hit ? floatBitsToUint(max(face_product(seen.plane, at), 0.0)) : 0u;
-        int place = ray.y * TILE + ray.x;
-        if (!named && nearness > 0u) { atomicMax(tile_nearness[place], nearness); }
-        if (named && nearness > 0u && nearness == tile_nearness[place]) { atomicMax(tile_name[place], seen.name); }
-        bool ends = ray.x == span.z;
-        ray = ends ? ivec2(span.x, ray.y + 1) : ivec2(ray.x + 1, ray.y);
+        // Loops, not branches: software drivers run through a branch that nobody takes.
+        for (bool close = abs(least) < FACE_CLOSE; close; close = false) { hit = tile_decides(tile, point, seen.name, seen.side, ray); }
+        for (; hit; hit = false) {
+            atomicMax(tile_nearness[ray.y * TILE + ray.x], tile_nearness_of(tile, seen, ray));
+            hits |= 1u << i;
+        }
+        ray = tile_next(span, ray);
     }
+    return hits;
+}
+
+// Names the triangle where it is the nearest: of those that are as near the last, for an order that no scheduling changes.
+void tile_sign(Tile tile, Seen seen, ivec4 span, uint hits)
+{
+    ivec2 ray = span.xy;
+    for (; hits != 0u; hits >>= 1u) {
+        for (bool hit = (hits & 1u) != 0u; hit; hit = false) {
+            uint nearness = tile_nearness_of(tile, seen, ray);
+            int place = ray.y * TILE + ray.x;
+            if (nearness > 0u && nearness == tile_nearness[place]) { atomicMax(tile_name[place], seen.name); }
+        }
+        ray = tile_next(span, ray);
+    }
+}
+
+// Of the first FACED times LANES triangles those of an invocation that faces may meet: a bit for each of six faces.
+#define FACED 5
+uint tile_faces(vec3 point, uint triangle_count)
+{
+    uint faces = 0u;
+    for (uint i = 0u; i < uint(FACED); ++i) {
+        uint index = i * uint(LANES) + gl_LocalInvocationIndex;
+        // A loop, not a branch: software drivers run through a branch that nobody takes.
+        for (bool is = index < triangle_count; is; is = false) {
+            Triangle triangle = triangles[index];
+            [[unroll]] for (uint face = 0u; face < 6u; ++face) {
+                vec3 a = face_coordinates(face, triangle.corners[0].xyz - point);
+                vec3 b = face_coordinates(face, triangle.corners[1].xyz - point);
+                vec3 c = face_coordinates(face, triangle.corners[2].xyz - point);
+                faces |= face_meets(a, b, c, vec2(-1.0), vec2(1.0)) ? 1u << (6u * i + face) : 0u;
+            }
+        }
+    }
+    return faces;
 }
 
 // Tries LANES triangles from `first` on: casts the small ones, and keeps the others in `tile_seen`, in their order. Their
 // number.
-uint tile_gather(Tile tile, vec3 point, uint first, uint triangle_count)
+uint tile_gather(Tile tile, vec3 point, uint first, uint triangle_count, uint faces)
 {
     uint lane = gl_LocalInvocationIndex;
     uint index = first + lane;
-    Seen seen;
+    uint chunk = first / uint(LANES);
+    Seen seen = Seen(vec3[3](vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, index + 1u);
     ivec4 span = ivec4(1, 1, 0, 0);
-    if (index < triangle_count) {
+    uint rays = 0u;
+    bool may = chunk >= uint(FACED) || (faces >> (6u * chunk + tile.face) & 1u) != 0u;
+    for (bool is = may && index < triangle_count; is; is = false) {
         vec3 a = face_coordinates(tile.face, triangles[index].corners[0].xyz - point);
         vec3 b = face_coordinates(tile.face, triangles[index].corners[1].xyz - point);
         vec3 c = face_coordinates(tile.face, triangles[index].corners[2].xyz - point);
         seen = face_seen(a, b, c, index + 1u);
         span = tile_span(tile, a, b, c);
+        ivec2 extent = max(span.zw - span.xy + 1, ivec2(0));
+        rays = uint(extent.x * extent.y);
     }
-    ivec2 extent = max(span.zw - span.xy + 1, ivec2(0));
-    uint rays = uint(extent.x * extent.y);
     uint few = rays <= uint(FEW) ? rays : 0u;
     bool many = rays > few;
     if (lane < 2u) { tile_mask[lane] = 0u; }
     barrier();
-    if (many) { atomicOr(tile_mask[lane / 32u], 1u << (lane % 32u)); }
-    if (rays > 0u) { tile_met = 1u; }
-    for (uint pass_ = 0u; pass_ < 2u; ++pass_) {
-        tile_cast(tile, point, seen, span, few, pass_ == 1u);
-        barrier();
+    for (bool mark = many; mark; mark = false) { atomicOr(tile_mask[lane / 32u], 1u << (lane % 32u)); }
+    for (bool mark = rays > 0u; mark; mark = false) {
+        tile_met = 1u;
+        if (few > 0u) { tile_any_cast = 1u; }
     }
+    uint hits = tile_cast(tile, point, seen, span, few);
+    barrier();
+    tile_sign(tile, seen, span, hits);
     ivec2 mask = ivec2(tile_mask[0], tile_mask[1]); // signed as what bitCount returns: naga has no other
-    if (many) {
+    for (; many; many = false) {
         int below = int((1u << (lane % 32u)) - 1u);
         int place = lane < 32u ? bitCount(mask.x & below) : bitCount(mask.x) + bitCount(mask.y & below);
         tile_seen[place] = seen;
+        tile_spans[place] = uint(span.x | span.y << 8 | span.z << 16 | span.w << 24);
     }
     barrier();
     return uint(bitCount(mask.x) + bitCount(mask.y));
 }
 
-// Finds what each ray of the tile sees. False where no triangle meets the tile.
-bool tile_find(Tile tile, vec3 point, uint triangle_count)
+// Tries the rays of a block with triangle `k` of those gathered. Reading it takes longer than trying it: what tells that no
+// ray hits comes first.
+void tile_try(Tile tile, vec3 point, ivec2 first, uint k, inout Block block)
+{
+    vec3 edges[3] = tile_seen[k].edges;
+    int hits = 0;
+    int close = 0;
+    [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
+        float least = face_least(edges, tile_at(tile, first + ivec2(i % BLOCK, i / BLOCK)));
+        hits |= least >= FACE_CLOSE ? 1 << i : 0;
+        close |= abs(least) < FACE_CLOSE ? 1 << i : 0;
+    }
+    for (; close != 0; close &= close - 1) {
+        int i = findLSB(close);
+        bool hit = tile_decides(tile, point, tile_seen[k].name, tile_seen[k].side, first + ivec2(i % BLOCK, i / BLOCK));
+        hits |= hit ? 1 << i : 0;
+    }
+    // A loop, not a branch: software drivers run through a branch that nobody takes.
+    for (; hits != 0; hits = 0) {
+        vec3 plane = tile_seen[k].plane;
+        uint name = tile_seen[k].name;
+        [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
+            float near = face_product(plane, tile_at(tile, first + ivec2(i % BLOCK, i / BLOCK)));
+            bool nearer = (hits & 1 << i) != 0 && near > block.nearness[i];
+            block.nearness[i] = nearer ? near : block.nearness[i];
+            block.names[i] = nearer ? name : block.names[i];
+        }
+    }
+}
+
+// Takes what was cast through the rays of a block where it is as near, and leaves zeros.
+void tile_merge(ivec2 first, inout Block block)
+{
+    [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
+        int place = (first.y + i / BLOCK) * TILE + first.x + i % BLOCK;
+        uint bits = tile_nearness[place];
+        for (bool cast_ = bits != 0u; cast_; cast_ = false) {
+            bool nearer = bits >= floatBitsToUint(block.nearness[i]);
+            block.nearness[i] = nearer ? uintBitsToFloat(bits) : block.nearness[i];
+            block.names[i] = nearer ? tile_name[place] : block.names[i];
+            tile_nearness[place] = 0u;
+            tile_name[place] = 0u;
+        }
+    }
+}
+
+// Before the first tile. What `tile_find` takes as the faces of the triangles.
+uint tile_begin(vec3 point, uint triangle_count)
 {
     uint lane = gl_LocalInvocationIndex;
-    ivec2 block = BLOCK * ivec2(lane % 8u, lane / 8u);
-    float nearness[BLOCK * BLOCK];
-    uint names[BLOCK * BLOCK];
-    [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-        nearness[i] = 0.0;
-        names[i] = 0u;
-        int place = (block.y + i / BLOCK) * TILE + block.x + i % BLOCK;
+    for (uint place = lane; place < uint(TILE * TILE); place += uint(LANES)) {
         tile_nearness[place] = 0u;
         tile_name[place] = 0u;
     }
-    if (lane == 0u) { tile_met = 0u; }
-    for (uint first = 0u; first < triangle_count; first += uint(LANES)) {
-        uint count = tile_gather(tile, point, first, triangle_count);
-        for (uint k = 0u; k < count; ++k) {
-            Seen seen = tile_seen[k];
-            int hits = 0;
-            int close = 0;
-            [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-                float least = face_least(seen, tile_at(tile, block + ivec2(i % BLOCK, i / BLOCK)));
-                hits |= least >= FACE_CLOSE ? 1 << i : 0;
-                close |= abs(least) < FACE_CLOSE ? 1 << i : 0;
-            }
-            for (; close != 0; close &= close - 1) {
-                int i = findLSB(close);
-                bool hit = tile_decides(tile, point, seen, block + ivec2(i % BLOCK, i / BLOCK));
-                hits |= hit ? 1 << i : 0;
-            }
-            [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-                float near = face_product(seen.plane, tile_at(tile, block + ivec2(i % BLOCK, i / BLOCK)));
-                bool nearer = (hits & 1 << i) != 0 && near > nearness[i];
-                nearness[i] = nearer ? near : nearness[i];
-                names[i] = nearer ? seen.name : names[i];
-            }
-        }
-    }
+    return tile_faces(point, triangle_count);
+}
+
+// Finds what the rays of an invocation's block see. False where no triangle meets the tile.
+bool tile_find(Tile tile, vec3 point, uint triangle_count, uint faces, out Block block)
+{
+    uint lane = gl_LocalInvocationIndex;
+    ivec2 ray = tile_block(lane);
     [[unroll]] for (int i = 0; i < BLOCK * BLOCK; ++i) {
-        int place = (block.y + i / BLOCK) * TILE + block.x + i % BLOCK;
-        uint bits = floatBitsToUint(nearness[i]);
-        if (bits > tile_nearness[place]) {
-            tile_nearness[place] = bits;
-            tile_name[place] = names[i];
+        block.nearness[i] = 0.0;
+        block.names[i] = 0u;
+    }
+    if (lane == 0u) {
+        tile_met = 0u;
+        tile_any_cast = 0u;
+    }
+    for (uint first = 0u; first < triangle_count; first += uint(LANES)) {
+        uint count = tile_gather(tile, point, first, triangle_count, faces);
+        for (uint k = 0u; k < count; ++k) {
+            ivec4 span = ivec4(uvec4(tile_spans[k]) >> uvec4(0u, 8u, 16u, 24u) & 0xffu);
+            bool meets = all(lessThanEqual(ray, span.zw)) && all(greaterThan(ray + BLOCK, span.xy));
+            for (; meets; meets = false) { tile_try(tile, point, ray, k, block); }
         }
     }
+    for (bool merge = tile_any_cast != 0u; merge; merge = false) { tile_merge(ray, block); }
     bool met = tile_met != 0u;
     barrier();
     return met;
