@@ -154,8 +154,8 @@ void main()
     float side = 2.0 / float(settings.size * uint(RAYS));
     vec4 sums[ELEMENTS];
     sums_clear(sums);
-    uint faces = tile_begin(point, settings.triangle_count);
     bool wanted = settings.keep_exact == 0u || SAMPLE_LIGHT(uint(LIGHT_EXTENT)).z == 0.0;
+    uint faces = tile_begin(point, wanted ? settings.triangle_count : 0u);
     uint tile_count = wanted ? 6u * tiles * tiles : 0u;
     for (uint number = 0u; number < tile_count; ++number) {
         uvec2 corner = uvec2(number % tiles, number / tiles % tiles);

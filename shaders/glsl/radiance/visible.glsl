@@ -1,4 +1,4 @@
-// What the rays of a tile see of triangles that hide one another, in shared memory: the nearest.
+// What the rays of a tile see of triangles that hide one another: the nearest.
 //
 // A triangle that few rays may meet is cast by one invocation, ray by ray, as a rasteriser does; one that more may meet is
 // tried by all invocations, each for the rays of its block. The includer defines BLOCK and has a workgroup of LANES
@@ -21,7 +21,7 @@ shared uint tile_mask[2];
 // Of each ray: bits of the nearness and the name of what one invocation cast. Zero between tiles.
 shared uint tile_nearness[TILE * TILE];
 shared uint tile_name[TILE * TILE];
-// 1 where any ray may see anything, and where anything was cast.
+// 1 where any ray may see anything, and where anything was cast. Zero between tiles.
 shared uint tile_met;
 shared uint tile_any_cast;
 
@@ -229,10 +229,15 @@ void tile_merge(ivec2 first, inout Block block)
 uint tile_begin(vec3 point, uint triangle_count)
 {
     uint lane = gl_LocalInvocationIndex;
+    if (lane == 0u) {
+        tile_met = 0u;
+        tile_any_cast = 0u;
+    }
     for (uint place = lane; place < uint(TILE * TILE); place += uint(LANES)) {
         tile_nearness[place] = 0u;
         tile_name[place] = 0u;
     }
+    barrier();
     return tile_faces(point, triangle_count);
 }
 
@@ -245,10 +250,6 @@ bool tile_find(Tile tile, vec3 point, uint triangle_count, uint faces, out Block
         block.nearness[i] = 0.0;
         block.names[i] = 0u;
     }
-    if (lane == 0u) {
-        tile_met = 0u;
-        tile_any_cast = 0u;
-    }
     for (uint first = 0u; first < triangle_count; first += uint(LANES)) {
         uint count = tile_gather(tile, point, first, triangle_count, faces);
         for (uint k = 0u; k < count; ++k) {
@@ -260,6 +261,10 @@ bool tile_find(Tile tile, vec3 point, uint triangle_count, uint faces, out Block
     for (bool merge = tile_any_cast != 0u; merge; merge = false) { tile_merge(ray, block); }
     bool met = tile_met != 0u;
     barrier();
+    if (lane == 0u) {
+        tile_met = 0u;
+        tile_any_cast = 0u;
+    }
     return met;
 }
 
