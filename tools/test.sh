@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 [ $# = 0 ] || fail "usage: tools/test.sh"
 say "checks of airglow: formatting, shaders, clippy, documentation, tests, rooms"
-echo "Expect 15 to 25 minutes on two cores from a clean clone, less when things are built."
+echo "Expect 15 to 35 minutes on two cores from a clean clone, less when things are built."
 
 require_toolchain
 for component in fmt clippy; do
