@@ -81,7 +81,8 @@ vec3 shown_radiance(Tile tile, vec3 point, uint index, vec2 at, float depth)
     return surface_radiance(surface, place, log2(max(surface.last.z * tile.side * depth, 1e-30)));
 }
 
-// Means over the rays of a texel, of which `first` is the first in the tile and `block` has what they see. Triangles without radiance hide others, and are not there otherwise.
+// Means over the rays of a texel, of which `first` is the first in the tile and `block` has what they see. Triangles without
+// radiance hide others, and are not there otherwise.
 Texel texel_of(Tile tile, vec3 point, Block block, ivec2 first, float solid_angle)
 {
     Texel texel;
