@@ -10,7 +10,7 @@
 use std::time::Instant;
 
 use airglow_gpu::{GpuError, Recorder};
-use airglow_math::statistics::{median, relative_l2};
+use airglow_math::statistics::{Interval, bootstrap_interval, relative_l2};
 use airglow_radiance::gpu::bench::Bench;
 use airglow_radiance::gpu::{LightShape, TexelSettings, Texels};
 use airglow_radiance::reference::Cube;
@@ -24,7 +24,7 @@ mod scenes;
 /// Samples of a dispatch.
 const SAMPLES: u32 = 128;
 /// Dispatches timed, after one that compiles.
-const RUNS: usize = 5;
+const RUNS: usize = 41;
 
 fn main() {
     let fixture = fixture_with(&Texels::requirements());
@@ -93,7 +93,7 @@ fn error(found: &[Incident], truth: &[Incident]) -> f64 {
     relative_l2(&all(found), &all(truth)).unwrap()
 }
 
-/// Wall and CPU time of a sample, and its rays.
+/// Wall time of a sample, the median and its 95 % interval, CPU time, and its rays.
 fn time(bench: &Bench<'_>, texels: &Texels, emitters: &[Triangle]) -> String {
     let buffers = bench.buffers(texels.settings().shape, emitters, &scenes::points(SAMPLES)).unwrap();
     let (mut times, mut cpu) = (Vec::new(), 0.0);
@@ -106,9 +106,10 @@ fn time(bench: &Bench<'_>, texels: &Texels, emitters: &[Triangle]) -> String {
         times.push(1e3 * begin.elapsed().as_secs_f64() / f64::from(SAMPLES));
     }
     let cpu = 1e3 * (cpu_seconds() - cpu) / (RUNS as f64 * f64::from(SAMPLES));
-    let wall = median(&times[1..]).unwrap();
+    let Interval { estimate, low, high } = bootstrap_interval(&times[1..], 0.95, 1000, 1).unwrap();
     let TexelSettings { size, rays, .. } = texels.settings();
-    format!("{wall:.3} ms, CPU {cpu:.3} ms a sample, {} rays", 6 * (size * rays).pow(2))
+    let rays = 6 * (size * rays).pow(2);
+    format!("{estimate:.3} ms ({low:.3} to {high:.3}), CPU {cpu:.3} ms a sample, {rays} rays")
 }
 
 /// CPU time of the whole process so far, seconds, in steps of 10 ms; 0 where Linux does not say.
