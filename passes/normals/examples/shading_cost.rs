@@ -11,20 +11,20 @@ use std::time::Instant;
 use airglow_gpu::ash::vk::BufferUsageFlags;
 use airglow_gpu::{Buffer, GpuError, Label, Location, Recorder, Requirements, Sampler, SamplerDesc};
 use airglow_graph::BufferDesc;
-use airglow_math::statistics::median;
+use airglow_math::statistics::{median, paired_ratio_interval};
 use airglow_normals::cost::{Shading, whole};
 use airglow_normals::{Bench, Brdf, FitSettings, Method, NormalMap, Settings, Storage};
 use airglow_tests::device::fixture_with;
 
 /// Pixels of a side.
 const SIDE: u32 = 512;
-const ROUNDS: usize = 11;
+const ROUNDS: usize = 101;
 /// The first is what all others are compared with.
 const METHODS: [Method; 6] =
     [Method::Toksvig, Method::Lobes(1), Method::Lobes(2), Method::Lobes(4), Method::Lobes(6), Method::Taps];
 
-/// Times every method in turn, so that what else the machine does falls on all of them, and prints their medians; the
-/// first round compiles.
+/// Times every method in turn, so that what else the machine does falls on all of them, and prints their medians, the median
+/// of the ratios to the first in the same round, and its 95 % interval; a round before compiles.
 fn race(
     bench: &Bench<'_>,
     map: &NormalMap,
@@ -58,9 +58,15 @@ fn race(
     }
     let lookup = if level.fract() > 0.0 { "trilinear" } else { "bilinear, one level" };
     println!("{brdf:?}, {storage:?}, {lookup}");
-    let medians: Vec<f64> = works.iter().map(|(.., times)| median(times).unwrap_or(f64::NAN)).collect();
-    for ((method, ..), seconds) in works.iter().zip(&medians) {
-        println!("  {method:9} {:7.2} ms, {:.2} times Toksvig", 1e3 * seconds, seconds / medians[0]);
+    for (method, _, _, times) in &works {
+        let ratio = paired_ratio_interval(times, &works[0].3, 0.95, 1000, 1)?;
+        println!(
+            "  {method:9} {:6.2} ms, {:.2} ({:.2} to {:.2}) times Toksvig",
+            1e3 * median(times)?,
+            ratio.estimate,
+            ratio.low,
+            ratio.high
+        );
     }
     Ok(())
 }

@@ -48,40 +48,22 @@ impl Lobe {
         (k / (2.0 * PI * -(-2.0 * k).exp_m1())).ln()
     }
 
-    /// The integral of the density times `exp(s (n.h - 1))` over the sphere, and the lobe that the product is.
-    ///
-    /// Products of such exponentials are such exponentials: with `v = k mu + s h` the integral is
-    /// `k (1 - e^(-2 |v|)) / (|v| (1 - e^(-2 k))) e^(|v| - k - s)`, whose exponent is taken without cancellation.
-    #[must_use]
-    pub fn times(&self, sharpness: f64, direction: DVec3) -> (f64, Self) {
-        let (logarithm, product) = self.log_times(sharpness, direction);
-        (logarithm.exp(), product)
-    }
-
-    /// The same with the logarithm of the integral, for a height on top that may be huge where the integral is tiny.
-    #[must_use]
-    pub fn log_times(&self, sharpness: f64, direction: DVec3) -> (f64, Self) {
-        let k = self.concentration;
-        let sum = k * self.axis + sharpness * direction;
-        let length = sum.length().max(MIN_CONCENTRATION);
-        let opening = (1.0 - self.axis.dot(direction)).max(0.0);
-        let exponent = -2.0 * k * sharpness * opening / (length + k + sharpness);
-        let factor = k * (-2.0 * length).exp_m1() / (length * (-2.0 * k).exp_m1());
-        let axis = sum.try_normalize().unwrap_or(self.axis);
-        (factor.ln() + exponent, Self { axis, concentration: length })
-    }
-
-    /// Mean of the clamped cosine `(n.l)+` over the lobe, n.l taken as normally distributed with the lobe's exact mean
-    /// and variance: exact where the lobe lies on one side of the horizon.
+    /// Mean of the clamped cosine `(n.l)+` over the lobe.
     #[must_use]
     pub fn clamped_cosine(&self, light: DVec3) -> f64 {
         let (k, r) = (self.concentration, mean_length(self.concentration));
-        let cosine = self.axis.dot(light);
-        let along = (1.0 - r * r - 2.0 * r / k).max(0.0);
-        let across = r / k;
-        let variance = along * cosine * cosine + across * (1.0 - cosine * cosine).max(0.0);
-        rectified(r * cosine, variance.max(1e-30).sqrt())
+        clamped_cosine(r / k, r, self.axis.dot(light))
     }
+}
+
+/// Mean of the clamped cosine `(n.l)+` over normals about an axis at the cosine `cosine` to the light, with a mean vector of
+/// length r and the variance `across`. n.l is taken as normally distributed with its exact mean and variance: exact where the
+/// normals lie on one side of the horizon.
+#[must_use]
+pub fn clamped_cosine(across: f64, r: f64, cosine: f64) -> f64 {
+    let along = (1.0 - r * r - 2.0 * across).max(0.0);
+    let variance = along * cosine * cosine + across * (1.0 - cosine * cosine).max(0.0);
+    rectified(r * cosine, variance.max(1e-30).sqrt())
 }
 
 /// Mean of `max(0, x)` for a normally distributed x.

@@ -6,7 +6,7 @@ mod common;
 
 use std::f64::consts::PI;
 
-use airglow_math::quadrature::{adaptive, gauss_legendre};
+use airglow_math::quadrature::adaptive;
 use airglow_math::sh::zonal::clamped_cosine;
 use airglow_math::statistics::relative_l2;
 use airglow_normals::vmf::{self, Lobe};
@@ -57,34 +57,6 @@ fn mean_length_is_the_mean_cosine() {
         assert_close("the total", total, 1.0, 1e-10);
         let mean = adaptive(|z| z * density(z), -1.0, 1.0, 1e-12).unwrap().value;
         assert_close("the mean cosine", mean, vmf::mean_length(k), 1e-7);
-    }
-}
-
-#[test]
-fn a_lobe_times_an_exponential_is_a_lobe() {
-    let rule = gauss_legendre(96).unwrap();
-    for (k, sharpness, degrees) in
-        [(2.0, 3.0, 40.0_f64), (20.0, 5.0, 100.0), (1e-6, 8.0, 10.0), (9.0, 40.0, 180.0)]
-    {
-        let lobe = Lobe { axis: DVec3::Z, concentration: k };
-        let (sine, cosine) = degrees.to_radians().sin_cos();
-        let half = DVec3::new(sine, 0.0, cosine);
-        let (mut integral, mut moment) = (0.0, DVec3::ZERO);
-        for (z, weight) in &rule {
-            let radius = (1.0 - z * z).sqrt();
-            for j in 0..128 {
-                let (y, x) = (2.0 * PI * f64::from(j) / 128.0).sin_cos();
-                let n = DVec3::new(radius * x, radius * y, *z);
-                let value =
-                    weight * 2.0 * PI / 128.0 * lobe.density(n) * (sharpness * (n.dot(half) - 1.0)).exp();
-                integral += value;
-                moment += value * n;
-            }
-        }
-        let (closed, product) = lobe.times(sharpness, half);
-        assert_close("the integral", closed, integral, 1e-9);
-        let mean = vmf::mean_length(product.concentration) * product.axis;
-        assert!((moment / integral - mean).length() < 1e-9, "{} is not {mean}", moment / integral);
     }
 }
 

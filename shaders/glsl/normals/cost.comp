@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // What sampling and shading a filtered map costs: one bilinear or trilinear lookup and one light an invocation.
 //
 // METHOD_LOBES LAYERS of them, with KEPT_OCTAHEDRAL in four bytes, METHOD_PARTS LAYERS of them at four places, METHOD_SH ORDER bands, METHOD_LEAN two layers;
@@ -39,19 +40,29 @@ float lobes_at(vec2 place, float level, vec3 light, vec3 half_vector)
     NormalsGgx ggx = normals_ggx_of(settings.parameter);
 #endif
     float sum = 0.0;
-    for (int i = 0; i < LAYERS; ++i) {
-        vec4 lobe = kept_at(place, i, level);
+    vec4 stored[LAYERS];
+    NormalsLobe lobes[LAYERS];
+    [[unroll]] for (int i = 0; i < LAYERS; ++i) { stored[i] = kept_at(place, i, level); }
+    [[unroll]] for (int i = 0; i < LAYERS; ++i) {
 #ifdef KEPT_OCTAHEDRAL
-        lobe = normals_octahedral(lobe);
+        stored[i] = normals_octahedral(stored[i]);
 #endif
+        lobes[i] = normals_lobe(stored[i]);
+    }
 #if defined(MODEL_LAMBERT)
-        sum += normals_lambert(lobe, light);
-#elif defined(MODEL_BLINN)
-        sum += normals_blinn_phong(lobe, settings.parameter, light, half_vector);
+    [[unroll]] for (int i = 0; i < LAYERS; ++i) { sum += stored[i].w * normals_lambert(lobes[i], light); }
 #else
-        sum += normals_ggx(lobe, ggx, light, half_vector);
+    NormalsReflecting reflecting[LAYERS];
+    [[unroll]] for (int i = 0; i < LAYERS; ++i) {
+#if defined(MODEL_BLINN)
+        reflecting[i] = normals_reflecting_blinn_phong(lobes[i], settings.parameter, half_vector);
+#else
+        reflecting[i] = normals_reflecting_ggx(lobes[i], ggx, half_vector);
+        reflecting[i].integral *= 0.25;
 #endif
     }
+    [[unroll]] for (int i = 0; i < LAYERS; ++i) { sum += stored[i].w * normals_lit(reflecting[i], light); }
+#endif
     return sum;
 }
 #endif
@@ -124,5 +135,6 @@ void main()
     sum = normals_single(mean.xyz, material, light, half_vector);
 #endif
 #endif
-    radiance.values[pixel.y * settings.size.x + pixel.x] = sum;
+    // llvmpipe stores lane by lane, and would work out what only the store needs lane by lane as well: not a value that is clamped.
+    radiance.values[pixel.y * settings.size.x + pixel.x] = max(sum, 0.0);
 }

@@ -16,7 +16,9 @@ const float NORMALS_MAX_CONCENTRATION = 1e7;
 struct NormalsLobe {
     vec3 axis;
     float concentration;
-    float mean; // length of its mean vector
+    float mean;    // length of its mean vector
+    float missing; // 1 - mean, with all its digits
+    float ratio;   // concentration * missing / mean, 1 to 3
 };
 
 // coth k - 1/k, within 2e-3, and 1 minus it within 2 %.
@@ -46,19 +48,22 @@ const float NORMALS_LEAST_MEAN = 1e-6;
 
 NormalsLobe normals_lobe(vec4 stored)
 {
-    float squared = dot(stored.xyz, stored.xyz);
-    if (stored.w <= NORMALS_LEAST_WEIGHT || squared <= NORMALS_LEAST_MEAN * NORMALS_LEAST_MEAN * stored.w * stored.w) {
-        return NormalsLobe(vec3(0.0, 0.0, 1.0), NORMALS_MIN_CONCENTRATION, 0.0);
-    }
-    // Quotients cost more than products: three are made of one.
-    float size = sqrt(squared);
-    float lacks = max(stored.w - size, 1e-7 * stored.w);
-    float over = 1.0 / (size * stored.w * lacks);
-    float of_weight = over * size * lacks;
-    float r = min(size * of_weight, 1.0);
-    float ratio = normals_concentration_ratio(r, lacks * of_weight);
-    float concentration = clamp(size * ratio * (over * size * stored.w), NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
-    return NormalsLobe(stored.xyz * (over * stored.w * lacks), concentration, r);
+    float weight = max(stored.w, NORMALS_LEAST_WEIGHT);
+    float size = sqrt(dot(stored.xyz, stored.xyz));
+    bool directed = size > NORMALS_LEAST_MEAN * weight;
+    size = directed ? size : NORMALS_LEAST_MEAN * weight;
+    // Quotients cost more than products: two are made of one.
+    float over = 1.0 / (size * weight);
+    float of_weight = over * size;
+    NormalsLobe lobe;
+    lobe.axis = stored.xyz * (over * weight);
+    lobe.axis.z = directed ? lobe.axis.z : 1.0; // all over the sphere: any will do
+    lobe.mean = min(size * of_weight, 1.0);
+    lobe.missing = max(weight - size, 1e-7 * weight) * of_weight;
+    lobe.ratio = normals_concentration_ratio(lobe.mean, lobe.missing);
+    lobe.concentration =
+        clamp(lobe.mean * lobe.ratio / lobe.missing, NORMALS_MIN_CONCENTRATION, NORMALS_MAX_CONCENTRATION);
+    return lobe;
 }
 
 // A lobe as functions take it, from one sampled as axis, width and weight in four unsigned bytes.
@@ -85,52 +90,11 @@ float normals_versine(vec3 a, vec3 b)
     return 0.5 * dot(between, between);
 }
 
-// A lobe times exp(sharpness (n.direction - 1)), again a lobe, whose axis is `own` times the lobe's and `other` times the
-// direction. Its integral is factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes
-// into the exponent.
-struct NormalsProduct {
-    float mean;
-    float across; // variance across its axis
-    float own;
-    float other;
-    float apart; // 1 - cosine of its axis and the direction
-    float factor;
-    float exponent;
-};
-
-// `apart`: 1 - cosine of the lobe's axis and the direction. Quotients cost more than products: seven are made of two.
-NormalsProduct normals_times(NormalsLobe lobe, float sharpness, float apart)
-{
-    const float least = 0.05; // of a concentration: products of what lies opposite, of which nothing is left
-    float k = lobe.concentration;
-    float both = k + sharpness;
-    float crossed = 2.0 * k * sharpness * apart;
-    float size = max(sqrt(max(both * both - crossed, 0.0)), least);
-    float sum = size + both;
-    float side = max(sum - k * apart, 1e-3 * size);
-    float over = 1.0 / (size * sum * side);
-    float inverse = over * sum * side;
-    NormalsProduct product;
-    product.own = k * inverse;
-    product.other = sharpness * inverse;
-    product.apart = product.own * (k * over * size * sum) * apart * (2.0 - apart);
-    product.exponent = -crossed * (over * size * side);
-    // The mean is that of `normals_mean_length`, by the inverse; (1 - exp(-2 k)) / k = 2 / (1 + k + k r), of both.
-    float above = 0.2351182 + inverse * (0.5028762 + inverse);
-    float below = 0.2351182 + inverse * (0.7379943 + inverse * (1.5689180 + 3.0 * inverse));
-    float open = (1.0 + inverse) * below + above;
-    float quotient = 1.0 / (below * open);
-    product.mean = above * open * quotient;
-    product.across = product.mean * inverse;
-    product.factor = (1.0 + k + k * lobe.mean) * inverse * below * below * quotient;
-    return product;
-}
-
 // The mean of max(0, x) for a normally distributed x, within 4e-4 deviations; `inverse` is 1 over the deviation.
 float normals_rectified(float mean, float deviation, float inverse)
 {
     float x = abs(mean) * inverse;
-    float t = max(1.0 - x / 4.5983302, 0.0);
+    float t = max(1.0 - 0.21747024 * x, 0.0);
     t *= t;
     t *= t;
     return max(mean, 0.0) + deviation * t * t * (0.3989423 + 0.1949854 * x);
@@ -141,39 +105,75 @@ float normals_rectified(float mean, float deviation, float inverse)
 float normals_clamped_cosine(float across, float r, float cosine)
 {
     float along = max(1.0 - r * r - 2.0 * across, 0.0);
-    float square = cosine * cosine;
-    float variance = max(along * square + across * max(1.0 - square, 0.0), 1e-14);
+    float variance = max(across + (along - across) * cosine * cosine, 1e-14);
     float inverse = inversesqrt(variance);
     return normals_rectified(r * cosine, variance * inverse, inverse);
 }
 
-// The same of a lobe that is stored, its weight left out.
-float normals_clamped_cosine(vec4 stored, vec3 light)
+// The same of a lobe.
+float normals_clamped_cosine(NormalsLobe lobe, vec3 light)
 {
-    float squared = dot(stored.xyz, stored.xyz);
-    float over = 1.0 / max(sqrt(squared) * stored.w, 1e-36);
-    float r = min(squared * over, 1.0);
-    return normals_clamped_cosine(normals_variance_across(r, 1.0 - r), r, stored.w * over * dot(stored.xyz, light));
+    return normals_clamped_cosine(normals_variance_across(lobe.mean, lobe.missing), lobe.mean, dot(lobe.axis, light));
 }
 
 // Lambert, albedo 1: the mean of (n.l)+ / pi.
-float normals_lambert(vec4 stored, vec3 light)
+float normals_lambert(NormalsLobe lobe, vec3 light)
 {
-    return stored.w * normals_clamped_cosine(stored, light) / PI;
+    return normals_clamped_cosine(lobe, light) / PI;
 }
 
-// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+: the power as an exponential whose height is right at the product's axis.
-float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
+// The same of a lobe that is stored, times its weight.
+float normals_lambert(vec4 stored, vec3 light)
+{
+    return stored.w * normals_lambert(normals_lobe(stored), light);
+}
+
+// Normals of a lobe, each weighed by what it reflects: the sum of weights, and a lobe of them, which may lie far from the
+// lobe's own axis.
+struct NormalsReflecting {
+    float integral;
+    vec3 axis;
+    float mean;   // length of the mean vector
+    float across; // variance across the axis
+};
+
+// Their radiance under a light, the mean of what reflects times (n.l)+. Many lobes are best shaded in rounds, all lobes, then
+// what reflects of all, then all radiances: one after another each waits for its own chain of products.
+float normals_lit(NormalsReflecting reflecting, vec3 light)
+{
+    return reflecting.integral * normals_clamped_cosine(reflecting.across, reflecting.mean, dot(reflecting.axis, light));
+}
+
+// The normals that reflect by (s + 8) / (8 pi) (n.h)^s. The power is an exponential of sharpness s + 1, whose product with
+// the lobe is again a lobe, about `own` times the axis and `other` times the half vector, with a height that is right at that
+// axis. Roots are a few terms of their series: where more would matter nothing is reflected.
+NormalsReflecting normals_reflecting_blinn_phong(NormalsLobe lobe, float exponent, vec3 half_vector)
 {
     float sharpness = exponent + 1.0;
-    NormalsLobe lobe = normals_lobe(stored);
-    NormalsProduct product = normals_times(lobe, sharpness, normals_versine(lobe.axis, half_vector));
-    float x = product.apart;
-    float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * x;
-    float integral = product.factor * exp(product.exponent + height);
-    float cosine = product.own * dot(lobe.axis, light) + product.other * dot(half_vector, light);
-    cosine = normals_clamped_cosine(product.across, product.mean, cosine);
-    return stored.w * (exponent + 8.0) / (8.0 * PI) * integral * cosine;
+    float concentration = lobe.mean * lobe.ratio; // times what is missing, as all that the quotient is of
+    float over = 1.0 / (concentration + sharpness * lobe.missing);
+    float own = concentration * over;
+    float inverse = lobe.missing * over; // 1 / (concentration + sharpness)
+    float other = sharpness * inverse;
+    float apart = normals_versine(lobe.axis, half_vector);
+    float bent = 2.0 * own * other * apart; // what the square of the product's sum of axes lacks to 1
+    float stretch = 1.0 + bent * (0.5 + 0.375 * bent); // 1 / sqrt(1 - bent)
+    float x = own * own * apart * (1.0 + 0.5 * bent); // 1 - cosine of the product's axis and the half vector
+    float height = exponent * log(max(1.0 - x, 1e-30)) + sharpness * (x - own * apart * (1.0 + 0.3 * bent));
+    float width = min(inverse * stretch, 1.0);
+    NormalsReflecting reflecting;
+    reflecting.integral =
+        (exponent + 8.0) * (0.0625 / PI) * stretch * (inverse + own * (1.0 + lobe.mean)) * exp(height);
+    reflecting.axis = stretch * (own * lobe.axis + other * half_vector);
+    reflecting.mean = 1.0 - width;
+    reflecting.across = width - width * width;
+    return reflecting;
+}
+
+// The mean of (s + 8) / (8 pi) (n.h)^s (n.l)+ over a lobe that is stored, times its weight.
+float normals_blinn_phong(vec4 stored, float exponent, vec3 light, vec3 half_vector)
+{
+    return stored.w * normals_lit(normals_reflecting_blinn_phong(normals_lobe(stored), exponent, half_vector), light);
 }
 
 #endif

@@ -2,81 +2,103 @@
 // over values, no bindings.
 //
 // Han, Sun, Ramamoorthi and Grinspun 2007; Walter, Marschner, Li and Torrance 2007; Heitz 2014. Of a lobe each model gives
-// the normals that reflect, packed as a lobe is stored: vec4(integral * mean normal, integral). The cosine and the
-// masking are taken of them, once: they may lie far from the lobe's own axis.
+// the normals that reflect, of which the cosine and the masking are taken once.
 
 #ifndef NORMALS_MICROFACET_GLSL
 #define NORMALS_MICROFACET_GLSL
 
 #include "normals/lobe.glsl"
 
-// GGX as four Gaussians, narrowest first: `1 / (1 + y)^2` is the sum of heights times `exp(-rates y)`, `y = (1 / alpha^2 - 1)
-// (1 - (n.h)^2)`.
+// GGX, `peak / (1 + narrowing (1 - (n.h)^2))^2`: the same for all lobes.
 struct NormalsGgx {
     float narrowing; // 1 / alpha^2 - 1
     float peak;      // 1 / (pi alpha^2)
-    vec4 rates;
-    vec4 heights;
 };
 
-// The four of an alpha, by polynomials in the logarithm of 1 / alpha^2, fitted: within 1 % where D is above 1/25 of its
-// peak from alpha 0.16 on, 2.4 % from 0.1 on, 5 % below. The same for all lobes.
 NormalsGgx normals_ggx_of(float alpha)
 {
-    float squared = max(alpha * alpha, 1e-8);
-    float x = clamp(-log(squared), 0.0, 7.0);
-    const vec4 rates[5] = vec4[5](
-        vec4(2.020985, 1.528056, 0.6806096, -0.5635334),
-        vec4(-0.2763084, -0.4536521, -0.4066618, -0.4646996),
-        vec4(-0.01133465, 0.002002666, -0.04017584, 0.00009337949),
-        vec4(0.003780658, -0.0006070246, -0.0009029911, -0.01715815),
-        vec4(-0.00008220316, 0.0003919921, 0.0008161687, 0.002131140)
-    );
-    const vec4 heights[5] = vec4[5](
-        vec4(-4.356948, -1.928411, -0.6242086, -1.183123),
-        vec4(2.112390, 1.131416, -0.006254053, -0.6214685),
-        vec4(-0.4315223, -0.3399138, -0.1814546, -0.07101548),
-        vec4(0.04154411, 0.03048675, 0.006546810, -0.02289220),
-        vec4(-0.001593506, -0.0005994182, 0.001192064, 0.003567625)
-    );
-    NormalsGgx ggx;
-    ggx.narrowing = max(1.0 / squared - 1.0, 0.0);
-    ggx.peak = 1.0 / (PI * squared);
-    ggx.rates = exp(rates[0] + x * (rates[1] + x * (rates[2] + x * (rates[3] + x * rates[4]))));
-    ggx.heights = exp(heights[0] + x * (heights[1] + x * (heights[2] + x * (heights[3] + x * heights[4]))));
-    return ggx;
+    float over = 1.0 / max(alpha * alpha, 1e-8);
+    return NormalsGgx(max(over - 1.0, 0.0), over / PI);
 }
 
-// The normals that reflect by D(n.h) of GGX. A Gaussian and a lobe are multiplied as Gaussians about their axes: a broad one
-// sees of the lobe its variance across, r / k, by squared sines; a narrow one its height and its own shape, by chords.
-vec4 normals_reflecting_ggx(NormalsLobe lobe, NormalsGgx ggx, vec3 half_vector)
+// The normals that reflect by D(n.h) of GGX, which blurred by a Gaussian stays `height / (1 + z slope + z^2 bend)^2`, by
+// polynomials in 1 / (1 + blur) (`passes/normals/src/ggx.rs`). A reflection broader than the lobe sees of it its variance
+// across, r / k, by squared sines; a narrower one its height on the axis, `beyond` more than that variance says, and its own
+// shape, by chords. A Gaussian's products have their mean where the logarithm of the integral grows.
+NormalsReflecting normals_reflecting_ggx(NormalsLobe lobe, NormalsGgx ggx, vec3 half_vector)
 {
     float apart = normals_versine(lobe.axis, half_vector);
-    float sine = apart * (2.0 - apart);
+    float variance = normals_variance_across(lobe.mean, lobe.missing);
+    float square = lobe.missing * lobe.missing;
+    float beyond = lobe.missing + square * (1.1 + 3.0 * square); // (1 - exp(-2 k)) / r - 1
+    float cut = 2.0 * square * square * square;                  // 2 exp(-2 k)
+    // narrow = broad / (1 + broad) and sharp = 1 / (1 + broad (1 + beyond narrow)), of one quotient.
+    float broad = 2.0 * ggx.narrowing * variance;
+    float wide = 1.0 + broad;
+    float blurred = wide * wide + beyond * broad * broad;
+    float over = 1.0 / (wide * blurred);
+    float narrow = broad * blurred * over;
+    float sharp = wide * wide * over;
+    float z = ggx.narrowing * sharp * apart * (2.0 - apart + narrow * (apart - cut));
+    float blur = 1.0 - sharp;
+    float height = 1.0 - blur * sharp * (1.66876 + sharp * (-4.13404 + sharp * (6.26377 - 3.24422 * sharp)));
+    float slope = 1.0 - blur * (0.54523 + 0.84634 * sharp);
+    float bend = 0.18006 * blur * z;
+    float fall = 1.0 / (1.0 + z * (slope + bend));
+    float own = max(1.0 - 2.0 * blur * fall * (slope + 2.0 * bend), 0.0);
+    float other = 1.0 - own;
+    NormalsReflecting reflecting;
+    reflecting.integral = ggx.peak * sharp * height * fall * fall;
+    reflecting.axis = (1.0 + own * other * apart) * (own * lobe.axis + other * half_vector);
+    reflecting.mean = 1.0 - lobe.missing * own;
+    reflecting.across = own * variance * (1.0 + beyond * narrow);
+    return reflecting;
+}
+
+// A lobe times exp(sharpness (n.direction - 1)), again a lobe, whose axis is `own` times the lobe's and `other` times the
+// direction. Its integral is factor * exp(exponent): a height on top, which may be huge where the integral is tiny, goes
+// into the exponent.
+struct NormalsProduct {
+    float mean;
+    float across; // variance across its axis
+    float own;
+    float other;
+    float apart; // 1 - cosine of its axis and the direction
+    float factor;
+    float exponent;
+};
+
+// `apart`: 1 - cosine of the lobe's axis and the direction. Quotients cost more than products: seven are made of two.
+NormalsProduct normals_times(NormalsLobe lobe, float sharpness, float apart)
+{
+    const float least = 0.05; // of a concentration: products of what lies opposite, of which nothing is left
     float k = lobe.concentration;
-    float missing = 1.0 - lobe.mean;
-    float variance = normals_variance_across(lobe.mean, missing);
-    float opening = 2.0 / (1.0 + k + k * lobe.mean);
-    vec4 rates = ggx.rates * ggx.narrowing;
-    // narrow = 1 - 1 / wide, kept = 1 / (1 + 2 rates (variance + (opening - variance) narrow)), of one quotient.
-    vec4 grown = 2.0 * variance * rates;
-    vec4 wide = 1.0 + grown;
-    vec4 square = wide * wide + 2.0 * (opening - variance) * rates * grown;
-    vec4 over = 1.0 / (wide * square);
-    vec4 narrow = grown * square * over;
-    vec4 kept = wide * wide * over;
-    vec4 distance = sine + narrow * (2.0 * apart * k * opening - sine);
-    vec4 integrals = ggx.heights * kept * exp(-rates * distance * kept);
-    // The mean lies between the axes, by the share that the lobe keeps of its width; on the sphere, not on the chord.
-    vec4 lengths = integrals * (1.0 - missing * kept) * (1.0 + kept * (1.0 - kept) * apart);
-    float own = dot(lengths, kept);
-    float other = dot(lengths, 1.0 - kept);
-    return ggx.peak * vec4(own * lobe.axis + other * half_vector, dot(integrals, vec4(1.0)));
+    float both = k + sharpness;
+    float crossed = 2.0 * k * sharpness * apart;
+    float size = max(sqrt(max(both * both - crossed, 0.0)), least);
+    float sum = size + both;
+    float side = max(sum - k * apart, 1e-3 * size);
+    float over = 1.0 / (size * sum * side);
+    float inverse = over * sum * side;
+    NormalsProduct product;
+    product.own = k * inverse;
+    product.other = sharpness * inverse;
+    product.apart = product.own * (k * over * size * sum) * apart * (2.0 - apart);
+    product.exponent = -crossed * (over * size * side);
+    // The mean is that of `normals_mean_length`, by the inverse; (1 - exp(-2 k)) / k = 2 / (1 + k + k r), of both.
+    float above = 0.2351182 + inverse * (0.5028762 + inverse);
+    float below = 0.2351182 + inverse * (0.7379943 + inverse * (1.5689180 + 3.0 * inverse));
+    float open = (1.0 + inverse) * below + above;
+    float quotient = 1.0 / (below * open);
+    product.mean = above * open * quotient;
+    product.across = product.mean * inverse;
+    product.factor = (1.0 + k + k * lobe.mean) * inverse * below * below * quotient;
+    return product;
 }
 
 // The normals that reflect by D(n.h) of Beckmann, `exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4)`, by the exponential that
 // touches it at the axis of the product.
-vec4 normals_reflecting_beckmann(NormalsLobe lobe, float alpha, vec3 half_vector)
+NormalsReflecting normals_reflecting_beckmann(NormalsLobe lobe, float alpha, vec3 half_vector)
 {
     const float least = 0.2; // of the cosine where it touches: beyond 78 degrees nothing is left
     float k = 1.0 / (alpha * alpha);
@@ -93,14 +115,14 @@ vec4 normals_reflecting_beckmann(NormalsLobe lobe, float alpha, vec3 half_vector
     float c = 1.0 - x;
     float height = product.exponent + sharpness * x - k * x * (2.0 - x) / (c * c);
     float integral = product.factor * exp(height) * k / (PI * c * c * c * c);
-    vec3 mean = product.mean * (product.own * lobe.axis + product.other * half_vector);
-    return integral * vec4(mean, 1.0);
+    vec3 axis = product.own * lobe.axis + product.other * half_vector;
+    return NormalsReflecting(integral, axis, product.mean, product.across);
 }
 
 // The mean of D(n.h) / 4 (n.l)+ by the normals that reflect.
-float normals_unmasked(vec4 reflecting, vec3 light)
+float normals_unmasked(NormalsReflecting reflecting, vec3 light)
 {
-    return 0.25 * reflecting.w * normals_clamped_cosine(reflecting, light);
+    return 0.25 * normals_lit(reflecting, light);
 }
 
 // The mean of D(n.h) / 4 (n.l)+, D of GGX.
@@ -124,20 +146,19 @@ float normals_masking(float alpha, float nl, float nv)
     return 0.5 / max(l + v, 1e-6);
 }
 
-// The mean of D(n.h) G / (4 (n.l)+ (n.v)) (n.l)+ over a lobe, the model of Torrance and Sparrow with GGX, but for Fresnel's
-// factor: that depends on light and half vector alone, and is the caller's to multiply. `ggx` is of `alpha`.
-float normals_torrance_sparrow(NormalsLobe lobe, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
+// The mean of D(n.h) G / (4 (n.l)+ (n.v)) (n.l)+ by the normals that reflect, the model of Torrance and Sparrow with GGX, but
+// for Fresnel's factor: that depends on light and half vector alone, and is the caller's to multiply.
+float normals_masked(NormalsReflecting reflecting, float alpha, vec3 light, vec3 view)
 {
-    vec4 reflecting = normals_reflecting_ggx(lobe, ggx, half_vector);
-    vec3 mean = reflecting.xyz / max(reflecting.w, 1e-30);
-    float nl = normals_clamped_cosine(reflecting, light);
-    return reflecting.w * nl * normals_masking(alpha, nl, max(dot(mean, view), 1e-4));
+    float nl = normals_clamped_cosine(reflecting.across, reflecting.mean, dot(reflecting.axis, light));
+    float nv = reflecting.mean * dot(reflecting.axis, view);
+    return reflecting.integral * nl * normals_masking(alpha, nl, max(nv, 1e-4));
 }
 
-// The same of a lobe that is stored.
+// The same of a lobe that is stored, times its weight. `ggx` is of `alpha`.
 float normals_torrance_sparrow(vec4 stored, NormalsGgx ggx, float alpha, vec3 light, vec3 view, vec3 half_vector)
 {
-    return stored.w * normals_torrance_sparrow(normals_lobe(stored), ggx, alpha, light, view, half_vector);
+    return stored.w * normals_masked(normals_reflecting_ggx(normals_lobe(stored), ggx, half_vector), alpha, light, view);
 }
 
 #endif

@@ -39,7 +39,7 @@ vec4 normals_reflecting_zonal(NormalsLobe lobe, vec3 half_vector)
 float normals_zonal(vec4 stored, vec3 light, vec3 half_vector)
 {
     vec4 reflecting = normals_reflecting_zonal(normals_lobe(stored), half_vector);
-    return stored.w * reflecting.w * normals_clamped_cosine(reflecting, light);
+    return stored.w * reflecting.w * normals_clamped_cosine(normals_lobe(reflecting), light);
 }
 
 #endif
