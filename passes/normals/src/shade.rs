@@ -63,8 +63,8 @@ fn ggx(lobe: &Lobe, alpha: f64, light: DVec3, half: DVec3) -> f64 {
     let seen = 1.0 + beyond * narrow;
     let sharp = 1.0 / (1.0 + broad * seen);
     let distance = sine + narrow * (2.0 * apart * (1.0 - missing.powi(6)) - sine);
-    let (value, own) = Blurred::of(sharp).at(sharp, narrowing * sharp * distance);
-    let integral = sharp * value / (PI * alpha * alpha);
+    let (value, own) = Blurred::of(sharp).at(narrowing * distance);
+    let integral = value / (PI * alpha * alpha);
     let stretch = 1.0 + own * (1.0 - own) * apart; // on the sphere, not on the chord
     let cosine = stretch * (own * lobe.axis.dot(light) + (1.0 - own) * half.dot(light));
     0.25 * integral * vmf::clamped_cosine(own * variance * seen, 1.0 - missing * own, cosine)

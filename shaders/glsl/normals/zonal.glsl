@@ -12,7 +12,7 @@
 
 // The normals that reflect: the convolved BRDF C, and its product with their mean, which is where C grows fastest, both with
 // the axis and with the concentration (Tweedie's formula): A(k) axis + grad C / C.
-vec4 normals_reflecting_zonal(NormalsLobe lobe, vec3 half_vector)
+NormalsReflecting normals_reflecting_zonal(NormalsLobe lobe, vec3 half_vector)
 {
     float k = lobe.concentration;
     float t = clamp(dot(lobe.axis, half_vector), -1.0, 1.0);
@@ -32,14 +32,14 @@ vec4 normals_reflecting_zonal(NormalsLobe lobe, vec3 half_vector)
     vec3 across = half_vector - t * lobe.axis;
     vec3 moment = (value * lobe.mean + sums.z) * lobe.axis + sums.y / k * across;
     float size = length(moment);
-    return vec4(size > value ? moment * (value / size) : moment, value);
+    NormalsLobe mean = normals_lobe(vec4(size > value ? moment * (value / size) : moment, value));
+    return NormalsReflecting(value, mean.axis, mean.mean, normals_variance_across(mean.mean, mean.missing));
 }
 
 // The mean of f(n.h) (n.l)+.
 float normals_zonal(vec4 stored, vec3 light, vec3 half_vector)
 {
-    vec4 reflecting = normals_reflecting_zonal(normals_lobe(stored), half_vector);
-    return stored.w * reflecting.w * normals_clamped_cosine(normals_lobe(reflecting), light);
+    return stored.w * normals_lit(normals_reflecting_zonal(normals_lobe(stored), half_vector), light);
 }
 
 #endif
